@@ -9,11 +9,11 @@ from __future__ import annotations
 import os
 import subprocess
 import time
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Hashable
 from contextlib import suppress
 from dataclasses import fields, replace
 from pathlib import Path
-from typing import Any, Protocol
+from typing import TYPE_CHECKING
 
 from tuisim.base.errors import HostError, LogError, RobotError, counted
 from tuisim.base.source import Program, user_python_path
@@ -66,8 +66,11 @@ from tuisim.engine.runs.side_files import (
     read_actions,
     read_stop_tick,
 )
-from tuisim.engine.runs.store import NewRun, RunStore
+from tuisim.engine.runs.store import RunStore
 from tuisim.engine.runs.views import TelemetryView, open_views
+
+if TYPE_CHECKING:
+    from tuisim.engine.runs.temporary import TemporaryRun
 
 STUCK_AFTER_S = 0.3
 """Time after a stop at which a child that has not ended is killed; see `RunHandle.time_used_s`."""
@@ -80,27 +83,6 @@ ENDED_CHILD_S = 0.2
 _BEYOND_LIMIT_S = CLEANUP_S + 1.0
 STALL_FACTOR = 2.0
 """A headless child without progress for this many stall limits of real time is stuck in C code."""
-
-
-class RunFolders(Protocol):
-    """The object that creates the folder of a new run: a `RunStore`, or a `TemporaryRun`."""
-
-    def create_run(
-        self,
-        program: Program,
-        spec: RunSpec,
-        field: Mapping[str, Any] | None = None,
-        options: Mapping[str, Any] | None = None,
-        live: bool = False,
-    ) -> NewRun: ...
-
-    def finish(self, run: NewRun, end: Ended, /) -> None: ...
-
-    def note_plugged(self, run: NewRun, parts: Sequence[PluggedPart], /) -> None: ...
-
-    def forget(self, run_id: str, /) -> None: ...
-
-    def load_run(self, run: Path, /) -> StoredRun: ...
 
 
 def _build_template_key(program: Program, spec: RunSpec, field: FieldFiles) -> Hashable:
@@ -151,7 +133,7 @@ class RunHandle:
         spec: RunSpec,
         field: FieldFiles,
         options: RunOptions,
-        store: RunFolders,
+        store: RunStore | TemporaryRun,
         of_many: bool = False,
         isolated: bool = False,
     ) -> None:

@@ -330,11 +330,10 @@ def _parse_program(plain: Mapping[str, Any]) -> Program:
     return Program(**fields)
 
 
-def _parse_options(data: Mapping[str, Any]) -> dict[str, Any]:
+def _check_options(data: Mapping[str, Any]) -> None:
     options = _check_type(data["options"], dict, "options")
     for answer in _check_type(options.get("answers", []), list, "answers"):
         _check_type(answer, str, "an answer")
-    return options
 
 
 def _parse_end(data: Mapping[str, Any]) -> Ended:
@@ -345,57 +344,79 @@ def _parse_end(data: Mapping[str, Any]) -> Ended:
     )
 
 
-def read_run(folder: Path, document: str | None = None, known: RunSpec | None = None) -> StoredRun:
+def read_run(folder: Path) -> StoredRun:
     """Return the run in a folder.
-
-    Args:
-        folder: The run folder.
-        document: The contents of its `run.json`, if they are known; otherwise they are read.
-        known: The spec in it, if it is known.
 
     Raises:
         LogError: there is no run in the folder, or it is damaged.
     """
-    data = read_run_file(folder) if document is None else json.loads(document)
+    data = read_run_file(folder)
+    try:
+        program = _parse_program(data["program"])
+        spec = _restore_spec(data["spec"])
+        plugged = map(PluggedPart.from_plain, _check_type(data["plugged"], list, "plugged"))
+        end = None if data["end"] is None else _parse_end(data["end"])
+        _check_options(data)
+        return open_run(folder, data, program, spec, tuple(plugged), end)
+    except LogError:
+        raise
+    except (KeyError, TypeError, ValueError, OverflowError, AttributeError, TuisimError) as error:
+        what = f"{error} is missing" if isinstance(error, KeyError) else str(error)
+        raise LogError(f"damaged: {shortened(what)}", file=str(folder / RUN_FILE)) from error
+
+
+def open_run(
+    folder: Path,
+    data: Mapping[str, Any],
+    program: Program,
+    first_spec: RunSpec,
+    plugged: tuple[PluggedPart, ...],
+    end: Ended | None,
+) -> StoredRun:
+    """Return the run in a folder, of which the parts are known that `run.json` contains.
+
+    Args:
+        folder: The run folder.
+        data: The contents of its `run.json`.
+        program: The program in it.
+        first_spec: The spec in it.
+        plugged: The parts in it that were plugged in.
+        end: The end in it; None if there is none.
+
+    Raises:
+        LogError: a recording cannot be read.
+        TypeError: one of the other contents is damaged.
+    """
     # If one recording of a falsified run is damaged, the other one, the program and the world can still be read.
-    is_falsified = isinstance(data.get("end"), dict) and data["end"].get("end") == End.FALSIFIED
+    is_falsified = end is not None and end.end is End.FALSIFIED
     telemetry, output = open_views(folder, is_falsified)
     try:
         actions, cut = read_actions(folder)
     except LogError as error:
         actions = ()
         cut = f"{error.message}: the user's actions are ignored"
-    try:
-        first_spec = _restore_spec(data["spec"]) if known is None else known
-        plugged = tuple(map(PluggedPart.from_plain, _check_type(data["plugged"], list, "plugged")))
-        end = None if data["end"] is None else _parse_end(data["end"])
-        lost = [_read_recording(view, end) for view in (telemetry, output)]
-        # The recording of a run that has ended does not change any more.
-        telemetry.holds = output.holds = end is not None
-        return StoredRun(
-            folder=folder,
-            id=_check_type(data["id"], str, "id"),
-            number=int(data["number"]),
-            created=_check_type(data["created"], str, "created"),
-            live=bool(data["live"]),
-            program=_parse_program(data["program"]),
-            spec=add_plugged(first_spec, plugged),
-            first_spec=first_spec,
-            plugged=plugged,
-            field=_check_type(data["field"] or {}, dict, "field") or None,
-            options=_parse_options(data),
-            tags=tuple(_check_type(tag, str, "a tag") for tag in data["tags"]),
-            end=end,
-            actions=actions,
-            notes=tuple(filter(None, (*lost, cut))),
-            telemetry=telemetry,
-            output=output,
-        )
-    except LogError:
-        raise
-    except (KeyError, TypeError, ValueError, OverflowError, AttributeError, TuisimError) as error:
-        what = f"{error} is missing" if isinstance(error, KeyError) else str(error)
-        raise LogError(f"damaged: {shortened(what)}", file=str(folder / RUN_FILE)) from error
+    lost = [_read_recording(view, end) for view in (telemetry, output)]
+    # The recording of a run that has ended does not change any more.
+    telemetry.holds = output.holds = end is not None
+    return StoredRun(
+        folder=folder,
+        id=_check_type(data["id"], str, "id"),
+        number=int(data["number"]),
+        created=_check_type(data["created"], str, "created"),
+        live=bool(data["live"]),
+        program=program,
+        spec=add_plugged(first_spec, plugged),
+        first_spec=first_spec,
+        plugged=plugged,
+        field=_check_type(data["field"] or {}, dict, "field") or None,
+        options=data["options"],
+        tags=tuple(_check_type(tag, str, "a tag") for tag in data["tags"]),
+        end=end,
+        actions=actions,
+        notes=tuple(filter(None, (*lost, cut))),
+        telemetry=telemetry,
+        output=output,
+    )
 
 
 def _read_recording(view: TelemetryView | OutputView, end: Ended | None) -> str:

@@ -26,7 +26,7 @@ from tuisim.engine.runs.run_folder import (
     RUN_FILE,
     StoredRun,
     build_run_data,
-    read_run,
+    open_run,
     write_run_file,
 )
 from tuisim.engine.runs.side_files import SIDE_FILES, hold, is_held
@@ -137,9 +137,7 @@ class TemporaryRun:
         self.folder = _create_folder(parent)
         self._data: dict[str, Any] = {}
         """The contents of `run.json`: the program could change the file."""
-        self._document = ""
-        """The contents of `run.json` as text."""
-        self._spec: RunSpec | None = None
+        self._parts: tuple[PluggedPart, ...] = ()
 
     def __enter__(self) -> TemporaryRun:
         return self
@@ -170,11 +168,10 @@ class TemporaryRun:
         created = datetime.now(UTC).isoformat(timespec="milliseconds")
         run_id = self.folder.name
         self._data = data = build_run_data(run_id, 0, created, program, spec, field, options, live)
-        self._document = json.dumps(data)
-        self._spec = spec
+        self._program, self._spec = program, spec
         file = self.folder / RUN_FILE
         try:
-            file.write_text(self._document, "utf-8")
+            file.write_text(json.dumps(data), "utf-8")
             return NewRun(run_id, 0, self.folder, hold(self.folder), data)
         except OSError as error:
             raise LogError(
@@ -186,8 +183,8 @@ class TemporaryRun:
 
     def note_plugged(self, _run: NewRun, parts: Sequence[PluggedPart]) -> None:
         """Record which parts have been plugged in so far."""
+        self._parts = tuple(parts)
         self._data["plugged"] = [part.to_plain() for part in parts]
-        self._document = json.dumps(self._data)
 
     def forget(self, _run_id: str) -> None:
         """Do nothing: the folder is deleted at the end of the `with` block."""
@@ -200,7 +197,7 @@ class TemporaryRun:
         """
         if not folder.is_dir():
             raise LogError("its folder was deleted while it ran", file=str(folder))
-        return read_run(folder, self._document, self._spec)
+        return open_run(folder, self._data, self._program, self._spec, self._parts, None)
 
     def write_end(self, end: Ended) -> None:
         """Write the end of the run to its folder, which is then as complete as that of a stored run.
