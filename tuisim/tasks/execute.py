@@ -65,9 +65,6 @@ def _run_task(task: Task, folder: Path) -> Result:
         try:
             ended = _run_to_end(handle, task.real_time_limit_s)
             run = handle.stored()
-            # The run has ended: read its telemetry and output now, and never again.
-            run.telemetry.hold()
-            run.output.hold()
             run, replayed_end = _replay_run(task, run, ended)
             judgements = _judge(task, run)
             result = _build_result(task, run, replayed_end, judgements)

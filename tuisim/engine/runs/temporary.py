@@ -138,6 +138,7 @@ class TemporaryRun:
         self._data: dict[str, Any] = {}
         """The contents of `run.json`: the program could change the file."""
         self._parts: tuple[PluggedPart, ...] = ()
+        self._end: Ended | None = None
 
     def __enter__(self) -> TemporaryRun:
         return self
@@ -178,8 +179,9 @@ class TemporaryRun:
                 f"cannot be written: {error.strerror or error}", file=str(file)
             ) from error
 
-    def finish(self, _run: NewRun, _end: Ended) -> None:
-        """Do nothing: only the handle of the run knows its end."""
+    def finish(self, _run: NewRun, end: Ended) -> None:
+        """Note the end of the run; nothing is written yet."""
+        self._end = end
 
     def note_plugged(self, _run: NewRun, parts: Sequence[PluggedPart]) -> None:
         """Record which parts have been plugged in so far."""
@@ -190,14 +192,14 @@ class TemporaryRun:
         """Do nothing: the folder is deleted at the end of the `with` block."""
 
     def load_run(self, folder: Path) -> StoredRun:
-        """Return the run in the folder, without its end.
+        """Return the run in the folder.
 
         Raises:
             LogError: the program has deleted it, or it is damaged.
         """
         if not folder.is_dir():
             raise LogError("its folder was deleted while it ran", file=str(folder))
-        return open_run(folder, self._data, self._program, self._spec, self._parts, None)
+        return open_run(folder, self._data, self._program, self._spec, self._parts, self._end)
 
     def write_end(self, end: Ended) -> None:
         """Write the end of the run to its folder, which is then as complete as that of a stored run.
