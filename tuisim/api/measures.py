@@ -20,7 +20,7 @@ from tuisim.batch.plan import Plan
 from tuisim.batch.table import Row, list_usual_columns
 from tuisim.engine.protocol import End
 from tuisim.engine.runs.frames import LINE, build_telemetry_columns
-from tuisim.engine.runs.run_folder import read_run
+from tuisim.engine.runs.store import load_run
 from tuisim.engine.runs.temporary import create_temporary_home
 from tuisim.tasks.task import Result
 
@@ -91,7 +91,7 @@ class Measures:
         with create_temporary_home("tuisim-study-") as folder:
             for name, data in result.files.items():
                 (folder / name).write_bytes(data)
-            run = Run(read_run(folder))
+            run = Run(load_run(folder))
             row = {
                 name: compute_cell(name, metric, run, result.index)
                 for name, metric in self._metrics.items()

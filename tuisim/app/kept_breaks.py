@@ -11,7 +11,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError
 from tuisim.base.regular_file import read_regular
 from tuisim.base.source import source_lines
-from tuisim.engine.breakpoints import Breakpoint, LineBreak
+from tuisim.engine.breakpoints import Breakpoint
 from tuisim.engine.files import MAX_FILE_BYTES
 
 FOLDER = "breaks"
@@ -78,7 +78,7 @@ def choose_sign(entry: Breakpoint) -> str:
     """Return the sign of a breakpoint beside its line: `○` if it is disabled, `◆` if it has a condition, else `●`."""
     if entry.disabled:
         return "○"
-    return "◆" if isinstance(entry.rule, LineBreak) and entry.rule.condition else "●"
+    return "◆" if entry.has_expression else "●"
 
 
 def follow_edit(breaks: tuple[Breakpoint, ...], before: str, now: str) -> tuple[Breakpoint, ...]:

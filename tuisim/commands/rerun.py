@@ -14,7 +14,7 @@ from tuisim.engine.protocol import End, RunState, Stop, Unended, UserAction
 from tuisim.engine.runs.diff import RunDiff, diff_runs
 from tuisim.engine.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.engine.runs.run_folder import restore_program
-from tuisim.engine.runs.side_files import FilesRead, read_state, read_stop_tick
+from tuisim.engine.runs.side_files import FilesRead
 
 if TYPE_CHECKING:
     from tuisim.engine.runs.run_folder import StoredRun
@@ -68,11 +68,7 @@ def same(run: StoredRun, again: StoredRun) -> RunDiff:
         return diff_runs(run, again, prefix=run.state in CUT_OFF)
     whole = diff_runs(run, again)
     # During cleanup, the progress of threads depends on the real clock, so only the part up to the stop is compared.
-    return (
-        whole
-        if whole.same
-        else diff_runs(run, again, prefix=True, until=read_stop_tick(run.folder))
-    )
+    return whole if whole.same else diff_runs(run, again, prefix=True, until=run.read_stop_tick())
 
 
 def list_changed_files(run: StoredRun) -> tuple[str, ...]:
@@ -83,7 +79,7 @@ def list_changed_files(run: StoredRun) -> tuple[str, ...]:
     """
     notes = []
     for read in FilesRead.read(run.folder).files:
-        now = read_state(read.path)
+        now = read.read_now()
         if now is not None and read.is_same(now):
             continue
         if not read.there:
@@ -97,11 +93,7 @@ def list_changed_files(run: StoredRun) -> tuple[str, ...]:
 def _has_obeyed_stop(run: StoredRun) -> bool:
     """Return whether the user stopped the program, and a re-run can stop it at the same position."""
     # The summary of a run that ignored the stop and had to be killed is longer than `stopped`.
-    return (
-        run.end is not None
-        and run.end.summary == "stopped"
-        and read_stop_tick(run.folder) is not None
-    )
+    return run.end is not None and run.end.summary == "stopped" and run.read_stop_tick() is not None
 
 
 def _build_options(run: StoredRun) -> RunOptions:
@@ -119,7 +111,7 @@ def _build_options(run: StoredRun) -> RunOptions:
     # the tick after the last, so the limit is half a tick later than that tick, which allows for rounding.
     enough_s = (last.tick + 1.5) / run.spec.profile.tick_hz
     stored = run.options
-    stop_tick = read_stop_tick(run.folder)
+    stop_tick = run.read_stop_tick()
     stop = () if stop_tick is None else (UserAction(stop_tick, Stop()),)
     try:
         limit_s = float(stored.get("time_limit_s", 0.0))

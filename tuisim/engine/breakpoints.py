@@ -121,6 +121,11 @@ class Breakpoint:
         """Return the line of a breakpoint; 0 if it has none."""
         return self.rule.line if isinstance(self.rule, LineBreak) else 0
 
+    @property
+    def has_expression(self) -> bool:
+        """Whether it pauses at its line only if an expression is true."""
+        return isinstance(self.rule, LineBreak) and bool(self.rule.condition)
+
     @classmethod
     def parse(cls, text: str, run: RunSpec | None = None) -> Breakpoint:
         """Return the breakpoint that a text describes, such as `12 if x > 3`; a text that begins with `#` is disabled.

@@ -39,6 +39,7 @@ from tuisim.engine.protocol import (
     SetBreaks,
     Started,
     Stop,
+    UserAction,
     Wheels,
 )
 from tuisim.engine.runs.child.events import DEBUGGED, EventStream, build_part, list_allowed_events
@@ -222,6 +223,15 @@ class RunHandle:
     def answers(self) -> tuple[str, ...]:
         """Answers that the run's options give in advance to calls of `input()`."""
         return self._options.answers
+
+    @property
+    def actions(self) -> tuple[UserAction, ...]:
+        """The user's actions so far.
+
+        Raises:
+            LogError: their file is damaged.
+        """
+        return read_actions(self.folder)[0]
 
     # Events
 

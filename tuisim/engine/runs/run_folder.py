@@ -23,11 +23,15 @@ from tuisim.engine.core.tree import dump_run, restore
 from tuisim.engine.mat_cache import FieldFiles
 from tuisim.engine.mats import background
 from tuisim.engine.protocol import End, Ended, RunState, SetNoise, Unended, UserAction
-from tuisim.engine.runs.side_files import MAX_BYTES, is_held, read_actions
+from tuisim.engine.runs.side_files import MAX_BYTES, is_held, read_actions, read_stop_tick
 from tuisim.engine.runs.views import OutputView, TelemetryView, TickRecord, open_views
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from tuisim.engine.core.commands.calls import SimulationCommand
+
+    Array = np.ndarray[Any, Any]
 
 RUN_FILE = "run.json"
 RUN_FORMAT = 3
@@ -119,6 +123,20 @@ class StoredRun:
         from tuisim.engine.runs.command_records import read_commands
 
         return tuple(read_commands(self.folder).unpack())
+
+    def read_command_rows(self) -> Array:
+        """Return the same commands as rows of `COMMAND_FIELDS`; none if they are not recorded, or damaged."""
+        from tuisim.engine.runs.command_records import MAX_COMMANDS, read_command_rows
+
+        return read_command_rows(self.folder, 0, MAX_COMMANDS)
+
+    def read_stop_tick(self) -> int | None:
+        """Return the last tick before the user's stop reached the program; None if it is not recorded.
+
+        Raises:
+            LogError: its file is damaged.
+        """
+        return read_stop_tick(self.folder)
 
     def find_noise(self, record: TickRecord) -> NoiseSpec:
         """Return the noise settings at the tick of a telemetry record."""

@@ -302,6 +302,10 @@ class FileRead:
             return (self.bytes, self.mtime_ns) == (other.bytes, other.mtime_ns)
         return (self.bytes, self.crc32) == (other.bytes, other.crc32)
 
+    def read_now(self) -> FileRead | None:
+        """Return the present state of the file; None if there is something else now, such as a folder."""
+        return read_state(self.path)
+
 
 @dataclass(frozen=True, slots=True)
 class FilesRead:

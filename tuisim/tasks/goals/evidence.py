@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
-from collections.abc import Sequence
 from functools import cached_property
 from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
@@ -12,13 +11,12 @@ from tuisim.base.data_class import dataclass
 from tuisim.engine.core.conditions import Operator, ValueCondition, ValueSource
 from tuisim.engine.core.field import Field
 from tuisim.engine.core.profile import NS_PER_S
-from tuisim.engine.protocol import End, Ended, Unended, UserAction
+from tuisim.engine.protocol import End, Ended, Unended
 from tuisim.engine.runs.frames import compute_column_values, evaluate_condition, tick_times_s
 from tuisim.engine.runs.readings import Readings, read_readings
 from tuisim.engine.runs.records import SAMPLE_STREAMS, OutputRow, Stream
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.samples import Sample, find_samples, select_rows
-from tuisim.engine.runs.side_files import read_actions
 from tuisim.tasks.goals.brick import (
     BRICK_COLUMNS,
     BRICK_STREAMS,
@@ -139,11 +137,6 @@ class Evidence:
         """
         return self.end.summary if self.end is not None and self.end.end is End.FALSIFIED else ""
 
-    @property
-    def _actions(self) -> Sequence[UserAction]:
-        run = self._run
-        return run.actions if isinstance(run, StoredRun) else read_actions(run.folder)[0]
-
     @cached_property
     def times_s(self) -> Array:
         """The simulated time of each tick in seconds, shape (n,)."""
@@ -209,7 +202,7 @@ class Evidence:
             LogError, ConfigError: the mat no longer exists, or its image has changed.
         """
         if name not in self.memo:
-            actions = self._actions
+            actions = self._run.actions
             if name in BRICK_COLUMNS:
                 self.memo[name] = build_brick_column(
                     name, len(self.records), self.brick_rows, actions

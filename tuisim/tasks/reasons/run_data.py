@@ -19,7 +19,6 @@ from tuisim.engine.core.spec import (
     UltrasonicSpec,
 )
 from tuisim.engine.protocol import End
-from tuisim.engine.runs.command_records import MAX_COMMANDS, read_command_rows
 from tuisim.engine.runs.frames import compute_column_values
 from tuisim.engine.runs.readings import (
     MODES_BY_KIND,
@@ -116,7 +115,7 @@ class RunData:
     @cached_property
     def commands(self) -> Array:
         """The commands that the program gave, as rows of `COMMAND_FIELDS`; none if the record is missing."""
-        return read_command_rows(self.run.folder, 0, MAX_COMMANDS)
+        return self.run.read_command_rows()
 
     @cached_property
     def command_ticks(self) -> Array:
