@@ -338,11 +338,11 @@ class TerminalApp(BufferedApp):
         self.push_screen(Palette(host.ACTIONS.values(), host.find_situation()), handle_choice)
 
     def _ask_guide(self, host: ActionHost, question: str) -> None:
-        """Open the guide.
+        """Open the guide with the search for a question.
 
         Args:
             host: The app or the screen that opens the guide.
-            question: The name of a page to open, or a question to search the guide for.
+            question: What the user typed.
         """
         from tuisim.app.guide.screen import GuideScreen
 

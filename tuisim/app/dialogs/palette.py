@@ -17,7 +17,6 @@ from tuisim.app import design
 from tuisim.app.action import Action
 from tuisim.app.dialogs.dialog import MOVE_KEYS, Dialog
 from tuisim.base import palette
-from tuisim.guide.catalogue import load_pages
 from tuisim.terminal.text_runs import cut
 
 _WIDTH = 74
@@ -27,7 +26,7 @@ _OUTSIDE = 4
 """Cells beside the frame in a narrow terminal."""
 _SHOW = "show or hide "
 GUIDE_PREFIX = "?"
-"""Before the name of a page of the guide or words for it, where a palette returns the id of an action."""
+"""Before a question to the guide, where a palette returns the id of an action."""
 _QUESTION_WORDS = (
     "how",
     "what",
@@ -75,7 +74,7 @@ def find_entries(entries: Sequence[Entry], typed: str) -> list[Entry]:
     4. All words are among the further words by which the entry can be found.
     5. All other entries.
 
-    In each group, entries that show or hide something come first. Pages of the guide come last, in the same order.
+    In each group, entries that show or hide something come first.
     """
     typed_words = typed.lower().rstrip("?").split()
     words = [word for word in typed_words if word not in _QUESTION_WORDS] or typed_words
@@ -86,7 +85,7 @@ def find_entries(entries: Sequence[Entry], typed: str) -> list[Entry]:
         for word in words
     ]
 
-    def rank(entry: Entry) -> tuple[bool, int, bool]:
+    def rank(entry: Entry) -> tuple[int, bool]:
         title, title_and_group = entry.title.lower(), f"{entry.title} {entry.group}".lower()
         fits = (
             title.removeprefix(_SHOW).startswith(" ".join(words)),
@@ -95,7 +94,7 @@ def find_entries(entries: Sequence[Entry], typed: str) -> list[Entry]:
             set(words) <= {*entry.words.split()},
         )
         step = fits.index(True) if True in fits else len(fits)
-        return entry.id.startswith(GUIDE_PREFIX), step, not title.startswith(_SHOW)
+        return step, not title.startswith(_SHOW)
 
     matches = [
         candidate for candidate in entries if all(word in texts[candidate.id] for word in words)
@@ -140,8 +139,12 @@ class SearchList(Dialog[str]):
     def _search(self, event: Input.Changed) -> None:
         self._list(event.value)
 
+    def find_matches(self, typed: str) -> list[Entry]:
+        """Return the lines of the list for a typed text."""
+        return find_entries(self._entries, typed)
+
     def _list(self, typed: str) -> None:
-        matches = find_entries(self._entries, typed)
+        matches = self.find_matches(typed)
         listed = self.query_one(OptionList)
         cells = min(_WIDTH, self.size.width - _OUTSIDE) - _BESIDE
         listed.clear_options()
@@ -157,15 +160,8 @@ class SearchList(Dialog[str]):
         self.query_one("#message").display = not matches
 
     @on(Input.Submitted)
-    def _choose_selected(self, event: Input.Submitted) -> None:
-        listed = self.query_one(OptionList)
-        if listed.option_count:
-            listed.action_select()
-        else:
-            self.handle_unfound(event.value.strip())
-
-    def handle_unfound(self, typed: str) -> None:
-        """Handle Enter while no entry matches the typed text; the base class does nothing."""
+    def _choose_selected(self) -> None:
+        self.query_one(OptionList).action_select()
 
     @on(OptionList.OptionSelected)
     def _handle_selection(self, event: OptionList.OptionSelected) -> None:
@@ -188,16 +184,10 @@ def _build_line(entry: Entry, cells: int) -> Text:
 class Palette(SearchList):
     """The command palette; it returns the id of the action that the user chooses. Actions that work now come first.
 
-    A search also lists pages of the guide, after the actions. If the user chooses a page, the result is `GUIDE_PREFIX`
-    and the name of the page. If nothing matches, Enter returns `GUIDE_PREFIX` and the typed words, so that the caller
-    can search the guide for them.
+    The last line searches the guide for the typed words: it returns `GUIDE_PREFIX` and these words.
     """
 
     TITLE_TEXT: str = "Commands"
-    NOTHING: str = (
-        "No command contains these words: Enter searches the guide, also for commands of the shell, such as movies. Or "
-        "try one word for what you see or do, such as mat, grey, chart, pen or speed."
-    )
 
     def __init__(self, actions: Iterable[Action[Any, Any]], now: object) -> None:
         entries = (
@@ -213,24 +203,13 @@ class Palette(SearchList):
         )
         super().__init__(sorted(entries, key=lambda entry: not entry.works))
 
-    def _list(self, typed: str) -> None:
-        # The pages are read only for a search, so that the palette opens at once.
-        if typed and not self._entries[-1].id.startswith(GUIDE_PREFIX):
-            self._entries = [*self._entries, *list_guide_pages()]
-        super()._list(typed)
-
-    def handle_unfound(self, typed: str) -> None:
-        """Close with the typed words for a search of the guide."""
-        if typed:
-            self.dismiss(GUIDE_PREFIX + typed)
-
-
-def list_guide_pages() -> list[Entry]:
-    """Return the pages of the guide as entries of a palette."""
-    return [
-        Entry(GUIDE_PREFIX + page.name, page.title, "Guide", words=f"{page.about} {page.words}")
-        for page in load_pages().values()
-    ]
+    def find_matches(self, typed: str) -> list[Entry]:
+        """Return the actions that match a typed text, and after them the question to the guide."""
+        matches = super().find_matches(typed)
+        if question := typed.strip():
+            title = f"Search the guide for: {question}"
+            matches.append(Entry(GUIDE_PREFIX + question, title, "Guide"))
+        return matches
 
 
 class ThemeChooser(SearchList):

@@ -290,15 +290,8 @@ class GuideScreen(Dialog[None]):
         self.call_after_refresh(self._contents.go_to, self.place)
 
     def ask(self, question: str) -> None:
-        """Let the guide begin with a page, or the search for a question; to be called before the screen is shown.
-
-        Args:
-            question: The name of the page, or the question.
-        """
-        if question in load_pages():
-            self._topic = Topic(question)
-        else:
-            self._at_first = question
+        """Let the guide begin with the search for a question; to be called before the screen is shown."""
+        self._at_first = question
 
     @property
     def _contents(self) -> _Contents:
