@@ -176,6 +176,15 @@ class Snapshot:
         return measure_sensors(self.spec.robot.further_sensors, self.instant, self.spec, self.field)
 
     @property
+    def state_label(self) -> str:
+        """The state at the instant in view: `past`, `moved` for a robot that was placed since, or that of the run."""
+        if self.past:
+            return "past"
+        if self.placed:
+            return "moved"
+        return end_label(self.end) if self.state is RunPhase.ENDED else self.state.value
+
+    @property
     def turning(self) -> str:
         """Words to append to the state of an ended run whose wheels still turn; empty in any other case."""
         is_end = self.state is RunPhase.ENDED and not (self.past or self.placed)
@@ -194,7 +203,7 @@ class Snapshot:
     def failed(self) -> bool:
         """Whether the end of a run that has failed is in view."""
         return (
-            not self.past
+            not (self.past or self.placed)
             and self.state == RunPhase.ENDED
             and self.end is not None
             and self.end not in GOOD_ENDS
@@ -278,7 +287,7 @@ class AppState:
     def status(self) -> str:
         """The state and the speed of the run, in words."""
         run = self.run
-        status = end_label(run.end) if run.state is RunPhase.ENDED else run.state.value
+        status = run.state_label
         if self.looks_back:
             status = "playing" if self.playing else f"past {run.time_s:.2f} s"
         return (

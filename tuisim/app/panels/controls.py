@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import ClassVar, assert_never
+from typing import ClassVar
 
 from rich.style import Style
 from rich.text import Text
 from textual.reactive import reactive
 
 from tuisim.app.action import ACT, ActionWords, fill_keys
-from tuisim.app.snapshot import IN_RUN, RunPhase, Snapshot, end_label, speed_label
+from tuisim.app.snapshot import IN_RUN, RunPhase, Snapshot, speed_label
 
 _LABEL_CELLS = 9
 
@@ -66,7 +66,8 @@ class Controls(ActionWords, can_focus=False):
         style = (
             self.get_component_rich_style("controls--failed", partial=True) if now.failed else ""
         )
-        return Text(_label_state(now), style)
+        words = f"past {now.time_s:.2f} s" if now.past else now.state_label + now.turning
+        return Text(words, style)
 
     def render(self) -> Text:
         now = self._snapshot
@@ -114,19 +115,3 @@ class Controls(ActionWords, can_focus=False):
         for line in lines:
             line.truncate(width, overflow="ellipsis")
         return Text("\n", no_wrap=True).join(lines[: self.size.height])
-
-
-def _label_state(now: Snapshot) -> str:
-    if now.past:
-        return f"past {now.time_s:.2f} s"
-    match now.state:
-        case RunPhase.IDLE:
-            return "ready"
-        case RunPhase.WAITING:
-            return "waits for input"
-        case RunPhase.STARTING | RunPhase.RUNNING | RunPhase.PAUSED:
-            return now.state.value
-        case RunPhase.ENDED:
-            return end_label(now.end) + now.turning
-        case _:
-            assert_never(now.state)

@@ -25,7 +25,7 @@ from tuisim.app.panels.instrumentation_lines import (
     list_seen,
 )
 from tuisim.app.panels.titles import build_title, name_setup
-from tuisim.app.snapshot import RunPhase, Snapshot, end_label
+from tuisim.app.snapshot import Snapshot
 from tuisim.engine.core.geometry import shown_heading_deg
 from tuisim.logs.units import parse_unit
 from tuisim.terminal.cell_view import LinesPanel
@@ -68,11 +68,7 @@ def build_subtitle(now: Snapshot, height: int) -> str:
 
     The text is empty for a panel that is high enough.
     """
-    return (
-        f"{now.time_s:.2f} s {_describe_state(now)[0]}{now.turning}"
-        if _is_small(now, height)
-        else ""
-    )
+    return f"{now.time_s:.2f} s {now.state_label}{now.turning}" if _is_small(now, height) else ""
 
 
 def _is_small(now: Snapshot, height: int) -> bool:
@@ -400,17 +396,12 @@ def _build_clock_line(now: Snapshot, width: int) -> Line:
     )
 
 
-def _describe_state(now: Snapshot) -> Run:
-    if now.past:
-        return "past", VALUE
-    if now.placed:
-        return "moved", VALUE
-    word = end_label(now.end) if now.state == RunPhase.ENDED and now.end else now.state
-    return word, WARNING if now.failed else VALUE
+def _format_state(now: Snapshot) -> Run:
+    return now.state_label, WARNING if now.failed else VALUE
 
 
 def _build_state_line(now: Snapshot, width: int) -> Line:
-    state = _describe_state(now)
+    state = _format_state(now)
     profile = now.spec.profile.name
     pen = "pen down" if now.pen_down else "pen up"
     turning = [(format_label("State"), state, format_unit(now.turning))] * bool(now.turning)
@@ -486,8 +477,8 @@ def _place_and_time(now: Snapshot, width: int) -> Line:
     named = (*position, format_unit(" h "), format_value(heading), format_unit("°"))
     return fit_line(
         width,
-        (*named, format_value(f"  {now.time_s:.2f}"), format_unit(" s  "), _describe_state(now)),
-        (*where, format_value(f"  {now.time_s:.2f}"), format_unit(" s  "), _describe_state(now)),
+        (*named, format_value(f"  {now.time_s:.2f}"), format_unit(" s  "), _format_state(now)),
+        (*where, format_value(f"  {now.time_s:.2f}"), format_unit(" s  "), _format_state(now)),
         (*where, format_value(f" {now.time_s:.2f}"), format_unit("s")),
         (
             format_value(x),
