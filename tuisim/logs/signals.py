@@ -206,6 +206,13 @@ class Summary:
     """Linearly interpolated, at `QUANTILES` by default."""
 
 
+def format_figure(value: float) -> str:
+    """Return a number of a table in four digits, or with one decimal from 1000 on; a dash if it is not finite."""
+    if not math.isfinite(value):
+        return "–"
+    return format(value, ".4g" if abs(value) < 1000 else ".1f")
+
+
 def compute_summary(values: FloatArray, quantiles: Sequence[float] = QUANTILES) -> Summary:
     """Return the summary statistics of a column.
 

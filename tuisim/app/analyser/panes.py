@@ -39,7 +39,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import TuisimError
 from tuisim.logs.bands import Band, count_samples, describe_width
 from tuisim.logs.plateaus import Search, find_plateaus, find_plateaus_in_subprocess
-from tuisim.logs.signals import QUANTILES
+from tuisim.logs.signals import QUANTILES, format_figure
 from tuisim.logs.table import FAST_ROWS
 from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.text_runs import Line, cut, find_first_row
@@ -77,10 +77,6 @@ class Pane:
     """Index of the first of the last columns, if these are shown all or not at all; else 0."""
     spare: Cells = ()
     """Headings of the columns that are left out first if not all fit, in this order."""
-
-
-def _format_figure(value: float, digits: str = ".4g") -> str:
-    return f"{value:{digits}}" if isfinite(value) else "–"
 
 
 Item = TypeVar("Item")
@@ -144,8 +140,8 @@ def _format_event(event: Event | CommandRow) -> Cells:
         event.variable,
         "rises" if crossing.rising else "falls",
         f"{crossing.time_s:.3f}",
-        _format_figure(event.since_s, ".3f"),
-        _format_figure(crossing.value),
+        f"{event.since_s:.3f}" if isfinite(event.since_s) else "–",
+        format_figure(crossing.value),
         f"{event.row + 1:,}",
         str(event.threshold),
     )
@@ -167,7 +163,7 @@ def _list_statistics(model: AnalysisModel) -> list[Cells]:
             summary.std,
             *(summary.quantiles or (nan,) * len(QUANTILES)),
         )
-        rows.append((trace.name, f"{summary.count:,}", *map(_format_figure, figures)))
+        rows.append((trace.name, f"{summary.count:,}", *map(format_figure, figures)))
     return rows
 
 

@@ -56,6 +56,8 @@ from tuisim.settings.command_line import Arguments
 if TYPE_CHECKING:
     import pandas as pd
 
+_FIGURE = "figure"
+"""In place of a format spec: as the analyser shows numbers."""
 _QUANTILE_NAMES = tuple(f"q{100 * part:g}" for part in signals.QUANTILES)
 
 
@@ -75,7 +77,7 @@ def summary(arguments: Arguments) -> int:
             rows.append({"log": log.title, "variable": name, **span, **figures, **quantiles})
             if arguments.json:
                 rows[-1]["notes"] = log.notes
-    number = dict.fromkeys(("min", "mean", "max", "std", *_QUANTILE_NAMES), ".4g")
+    number = dict.fromkeys(("min", "mean", "max", "std", *_QUANTILE_NAMES), _FIGURE)
     show_rows(
         rows, arguments, {"variable": "", "count": "", "first_s": ".2f", "last_s": ".2f", **number}
     )
@@ -162,7 +164,7 @@ def events(arguments: Arguments) -> int:
     show_rows(
         rows,
         arguments,
-        {"variable": "", "time_s": ".3f", "crossing": "", "value": ".4g", "row": ""},
+        {"variable": "", "time_s": ".3f", "crossing": "", "value": _FIGURE, "row": ""},
     )
     return 0
 
@@ -416,7 +418,7 @@ def show_columns(
     Args:
         columns: Values by the name of the column.
         arguments: `json` and `out` select the format.
-        formats: Columns of the table, and their format specs, such as `.2f`.
+        formats: Columns of the table, and their format specs, such as `.2f`, or `_FIGURE`.
     """
     if not any(map(len, columns.values())):
         columns = dict.fromkeys(formats, np.empty(0, object))
@@ -477,5 +479,7 @@ def _format_cells(column: Column, format_spec: str) -> list[str]:
         elif isnan(item):
             cells.append("")
         else:
-            cells.append(format(item, format_spec))
+            cells.append(
+                signals.format_figure(item) if format_spec == _FIGURE else format(item, format_spec)
+            )
     return cells
