@@ -49,6 +49,13 @@ def test_config_init_never_overwrites_an_existing_file(config: Path, here: Comma
     assert f"{config}: exists already" in again.stderr
 
 
+def test_config_that_would_change_a_setting_names_the_file(here: Command) -> None:
+    done = here("config", "set", "speed", "fast")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "config set speed fast: this command changes no setting" in done.stderr
+    assert "change the setting there" in done.stderr
+
+
 @cases(
     "text, problem",
     {

@@ -5,11 +5,12 @@ from __future__ import annotations
 from tuisim.base.errors import ConfigError
 from tuisim.commands.echo import AS_JSON, draw_table, echo, echo_json, echo_lines
 from tuisim.programs.program_settings import PROGRAM_PATHS
-from tuisim.settings.command_line import command, option
+from tuisim.settings.command_line import argument, command, option
 from tuisim.settings.user_config import FILE, SETTINGS, UserConfig, write_template
 
 
 @command(
+    argument("words", "", nargs=-1),
     AS_JSON,
     option(
         "--init",
@@ -23,12 +24,18 @@ from tuisim.settings.user_config import FILE, SETTINGS, UserConfig, write_templa
     explains the settings.
     """,
 )
-def config(as_json: bool, init: bool) -> int:
+def config(words: tuple[str, ...], as_json: bool, init: bool) -> int:
     """Print the user's settings, or write `config.toml`.
 
     Raises:
-        ConfigError: something in the file is wrong, or it exists already.
+        ConfigError: something in the file is wrong, or it exists already; or there are further words.
     """
+    if words:
+        raise ConfigError(
+            "this command changes no setting",
+            f"`tuisim config --init` writes {FILE}: change the setting there with an editor",
+            key=f"config {' '.join(words)}",
+        )
     if init:
         if as_json:
             raise ConfigError(
