@@ -9,6 +9,7 @@ from tests.tasks.reasons.runs import run_text
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.tasks.reasons.one_colour import OneColor, find_one_color, name_only_color
+from tuisim.tasks.reasons.run_data import RunData
 
 TEXT = """\
 # %%sim_magic_preloaded -b Grey_bands -x {x} -y 500
@@ -32,10 +33,11 @@ def test_a_sensor_that_saw_one_colour_on_a_long_way_is_named(
     x: int, seconds: float, reads: int, seen: OneColor | None
 ) -> None:
     run = run_text(TEXT.format(x=x, seconds=seconds))
-    records = run.telemetry.array()
-    every = np.arange(1, len(records), max(1, len(records) // reads))
-    ticks = {"left": every, "right": every[:0]}
-    assert find_one_color(records, run.spec, run.open_mat(), ticks) == seen
+    data = RunData(run)
+    count = len(data.records)
+    every = np.arange(1, count, max(1, count // reads))
+    data.light_ticks = {"left": every, "right": every[:0]}
+    assert find_one_color(data) == seen
 
 
 @pytest.mark.parametrize(

@@ -133,40 +133,29 @@ def is_met(check: Check, events: Sequence[Event]) -> bool:
         check: The check of the step.
         events: The events, in order.
     """
-    match check:
-        case RunCheck():
-            return count_good_runs(check, events) >= check.times
-        case QuestionCheck():
-            typed = [event for event in events if isinstance(event, Typed)]
-            return any(
-                is_right(check, event.text) and not explain_unready(check, event) for event in typed
-            )
-        case WatchCheck(expression):
-            return any(
-                isinstance(event, ExpressionWatched) and _is_same(event.expression, expression)
-                for event in events
-            )
-        case BreakCheck(matches):
-            return any(
-                isinstance(event, BreakMet) and re.search(matches, event.text) for event in events
-            )
-        case ExportCheck(suffix):
-            return any(
-                isinstance(event, Exported) and event.name.endswith(suffix) for event in events
-            )
-        case NoteCheck():
-            return any(isinstance(event, Noted) and _is_noted(check, event) for event in events)
-        case VisitCheck(from_s, to_s):
-            return any(
-                isinstance(event, Visited) and from_s <= event.time_s <= to_s for event in events
-            )
-        case ShowCheck(panel, paused):
-            shown_events = (
-                event for event in events if isinstance(event, Shown) and event.panel == panel
-            )
-            return any(event.paused or not paused for event in shown_events)
-        case _:
-            assert_never(check)
+    if isinstance(check, RunCheck):
+        return count_good_runs(check, events) >= check.times
+    return any(_passes(check, event) for event in events)
+
+
+def _passes(check: Check, event: Event) -> bool:
+    """Return whether an event alone passes a check that is not about runs."""
+    match check, event:
+        case QuestionCheck(), Typed(text):
+            return is_right(check, text) and not explain_unready(check, event)
+        case WatchCheck(expression), ExpressionWatched(watched):
+            return _is_same(watched, expression)
+        case BreakCheck(matches), BreakMet(text):
+            return re.search(matches, text) is not None
+        case ExportCheck(suffix), Exported(name):
+            return name.endswith(suffix)
+        case NoteCheck(), Noted():
+            return not note_fault(check, event)
+        case VisitCheck(from_s, to_s), Visited(time_s):
+            return from_s <= time_s <= to_s
+        case ShowCheck(panel, paused), Shown(shown, is_paused):
+            return shown == panel and (is_paused or not paused)
+    return False
 
 
 def count_good_runs(check: RunCheck, events: Sequence[Event]) -> int:
@@ -301,18 +290,8 @@ def _normalize(text: str) -> str:
     return "".join(text.split()).casefold().strip("\"'`“”‘’.!")
 
 
-def _is_noted(check: NoteCheck, event: Noted) -> bool:
-    if check.level is not None and (
-        event.level is None or abs(event.level - check.level) > check.within
-    ):
-        return False
-    return re.search(check.matches, event.text, re.IGNORECASE) is not None
-
-
 def note_fault(check: NoteCheck, event: Noted) -> str:
     """Return in a sentence why a student's note does not pass a check; empty if it does."""
-    if _is_noted(check, event):
-        return ""
     note = f"Your note “{event.text}” is on"
     if check.level is not None and event.level is None:
         return f"{note} no samples: select a band first."
@@ -322,7 +301,9 @@ def note_fault(check: NoteCheck, event: Noted) -> str:
         and abs(event.level - check.level) > check.within
     ):
         return f"{note} samples with a mean of {event.level:.1f}; this step is about those with {check.level:g}."
-    return f"{note} the right samples, but its text does not say what the step asks for."
+    if re.search(check.matches, event.text, re.IGNORECASE) is None:
+        return f"{note} the right samples, but its text does not say what the step asks for."
+    return ""
 
 
 def parse_event(check: Check, text: str) -> Event:

@@ -10,7 +10,6 @@ import numpy as np
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.commands.calls import Call
-from tuisim.engine.runs.arrays import find_spans
 from tuisim.engine.runs.command_words import CALL_WORDS, Aim
 from tuisim.programs import moves
 from tuisim.tasks.reasons.run_data import STOP_CALLS, RunData
@@ -100,12 +99,10 @@ def list_parted_moves(data: RunData) -> Iterator[Unmet]:
     """
     is_straight = data.facts.remarks.has_straight_comment
     for pair in moves.list_parted_moves(data.facts.tree, is_straight):
-        stays, next_stays = (
-            find_spans(data.records["line"] == line) for line in (pair.first_line, pair.next_line)
-        )
-        for start, end in stays.tolist():
-            following = next_stays[next_stays[:, 0] >= end]
-            if len(following) and _has_swerved(data.records, start, end, *following[0].tolist()):
+        next_stays = data.find_stays(pair.next_line, pair.next_line)
+        for start, end in data.find_stays(pair.first_line, pair.first_line):
+            following = next((stay for stay in next_stays if stay[0] >= end), None)
+            if following and _has_swerved(data.records, start, end, *following):
                 text = (
                     f"{pair.method} waits until this wheel is done before line {pair.next_line} moves the other one: "
                     f"{pair.option} on the first drives both"

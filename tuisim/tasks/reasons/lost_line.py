@@ -19,12 +19,9 @@ from numpy.typing import NDArray
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, ColorSensorSpec
 from tuisim.engine.runs.arrays import compute_world_points_mm, find_spans
-from tuisim.engine.runs.sensor_arrays import measure_quiet_color
+from tuisim.tasks.reasons.run_data import RunData, compute_turns_deg
 
 if TYPE_CHECKING:
-    from tuisim.engine.core.field import Field
-    from tuisim.engine.core.spec import RunSpec
-
     Array = NDArray[Any]
     Bools = NDArray[np.bool_]
 
@@ -75,26 +72,19 @@ class LostLine:
     """How the robot turned away from the line, if it steered with the wrong sign; else empty."""
 
 
-def find_lost_lines(
-    records: Array, spec: RunSpec, mat: Field, read_ticks: Mapping[str, Array]
-) -> Iterator[LostLine]:
-    """Yield each time that the robot lost the line, in order.
-
-    Args:
-        records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
-        spec: The run.
-        mat: Its mat, prepared for its sensors.
-        read_ticks: The ticks at which the program read each light sensor, by name, in ascending order.
-    """
-    eyes = spec.robot.color_sensors
-    watched = {name: ticks for name, ticks in read_ticks.items() if len(ticks) >= MIN_READINGS}
+def find_lost_lines(data: RunData) -> Iterator[LostLine]:
+    """Yield each time that the robot lost the line, in order."""
+    records, hz = data.records, data.hz
+    eyes = data.run.spec.robot.color_sensors
+    watched = {
+        name: ticks for name, ticks in data.light_ticks.items() if len(ticks) >= MIN_READINGS
+    }
     if not watched:
         return
-    seen = _see_line(records, spec, mat, _find_points(eyes))
+    seen = _see_line(data, _find_points(eyes))
     if seen is None:
         return
     read = np.sort(np.concatenate([*watched.values()]))
-    hz = spec.profile.tick_hz
     way = _Way(records, np.logical_or.reduce(seen.is_dark))
     looks = [dark for eye, dark in zip(eyes, seen.is_middle, strict=False) if eye.name in watched]
     is_steered = any(way.is_steered(look, hz) for look in looks)
@@ -104,10 +94,9 @@ def find_lost_lines(
         if is_looking and way.was_followed(number):
             # `zip` takes only the sensors, which come first among the points.
             dark = {eye.name: true for eye, true in zip(eyes, seen.is_dark, strict=False)}
-            before = records[: left + round(_SOON_S * hz)]
             turn = "the robot turned away from the sensor that saw it"
             if not _turns_away(records[: end + 1], eyes, dark, watched):
-                turn = _find_wrong_turn(before, spec, mat, watched)
+                turn = _find_wrong_turn(data, left + round(_SOON_S * hz), watched)
             if turn or is_steered:
                 loss = _name_loss(dark, seen.is_black, watched, left, hz)
                 yield replace(loss, wrong_turn=turn)
@@ -142,47 +131,41 @@ def _name_loss(
     return LostLine(last, sensor, bool(has_black), (name, tick) if name else None)
 
 
-def _find_wrong_turn(
-    records: Array, spec: RunSpec, mat: Field, watched: Mapping[str, Array]
-) -> str:
+def _find_wrong_turn(data: RunData, end: int, watched: Mapping[str, Array]) -> str:
     """Return in words how a robot with the wrong sign in its steering turned away from the line; empty if it did not.
 
     Such a robot turns to the brighter side when a sensor gets brighter.
 
     Args:
-        records: Telemetry up to the loss of the line.
-        spec: The run.
-        mat: Its mat.
+        data: The run.
+        end: The tick of the loss of the line.
         watched: The ticks at which the program read each sensor, by its name.
     """
-    for eye in spec.robot.color_sensors:
+    for eye in data.run.spec.robot.color_sensors:
         ticks = watched.get(eye.name, ())
-        if side := _find_wrong_side(records, eye, spec, mat, np.asarray(ticks, np.int64)):
+        if side := _find_wrong_side(data, end, eye, np.asarray(ticks, np.int64)):
             return f"as it got brighter, the robot turned {side}, away from the line"
     return ""
 
 
-def _find_wrong_side(
-    records: Array, eye: ColorSensorSpec, spec: RunSpec, mat: Field, ticks: Array
-) -> str:
+def _find_wrong_side(data: RunData, end: int, eye: ColorSensorSpec, ticks: Array) -> str:
     """Return the side to which a robot turned when a sensor got brighter, if this was away from the line; else empty.
 
     Only the time before the line was lost counts: after that, the robot may reach the other edge of the line, at which
     it must turn to the other side.
 
     Args:
-        records: Telemetry up to the loss of the line.
+        data: The run.
+        end: The tick of the loss of the line.
         eye: The sensor.
-        spec: The run.
-        mat: Its mat.
         ticks: The ticks at which the program read the sensor.
     """
-    lag = round(_LAG_S * spec.profile.tick_hz)
+    records = data.records[:end]
+    lag = round(_LAG_S * data.hz)
     ticks = ticks[ticks < len(records) - lag - 1]
-    turned_deg = (np.diff(records["heading_deg"]) + 180) % 360 - 180
-    turned_deg = turned_deg[ticks + lag]
+    turned_deg = compute_turns_deg(records)[ticks + lag]
     light, left, right = (
-        compute_reflected_percent(records[ticks], replace(eye, x_mm=eye.x_mm + aside_mm), spec, mat)
+        _measure_percent(data, replace(eye, x_mm=eye.x_mm + aside_mm), records[ticks])
         for aside_mm in (0, -_ASIDE_MM, _ASIDE_MM)
     )
     is_edge = np.abs(left - right) > _MIN_SLOPE_PC
@@ -194,7 +177,7 @@ def _find_wrong_side(
     # A positive turn is one to the left.
     brighter = np.sign(left - right)[is_edge]
     is_away = brighter * covariance > 0
-    away_dps = np.mean(brighter * turned_deg[is_edge]) * spec.profile.tick_hz
+    away_dps = np.mean(brighter * turned_deg[is_edge]) * data.hz
     is_wrong = is_away.mean() >= _MIN_AWAY_SHARE and away_dps >= _MIN_TURN_DPS
     return ("left" if covariance > 0 else "right") if is_wrong else ""
 
@@ -217,9 +200,8 @@ def _turns_away(
     if len(pair) != 2 or not pair[0].x_mm < 0 < pair[1].x_mm:
         return False
     on_left, on_right = (dark[eye.name][: len(records) - 1] for eye in pair)
-    turned_deg = (np.diff(records["heading_deg"]) + 180) % 360 - 180
     # A positive turn is one to the left.
-    towards_deg = turned_deg * (on_left.astype(int) - on_right)
+    towards_deg = compute_turns_deg(records) * (on_left.astype(int) - on_right)
     towards_deg = towards_deg[towards_deg != 0]
     is_away = towards_deg < 0
     return len(is_away) >= _MIN_AWAY and bool(is_away.mean() >= _MIN_AWAY_SHARE)
@@ -234,12 +216,9 @@ def is_on_mat(records: Array, sensor: ColorSensorSpec) -> Bools:
     return is_on
 
 
-def compute_reflected_percent(
-    records: Array, sensor: ColorSensorSpec, spec: RunSpec, mat: Field
-) -> Array:
+def _measure_percent(data: RunData, sensor: ColorSensorSpec, records: Array) -> Array:
     """Return what a light sensor reads of the mat without noise, in percent, shape (n,)."""
-    red, *_ = measure_quiet_color(records, sensor, spec, mat).values()
-    percent: Array = red / 2.55
+    percent: Array = data.measure_channels(sensor, records)[0] / 2.55
     return percent
 
 
@@ -271,15 +250,13 @@ def _find_points(eyes: Sequence[ColorSensorSpec]) -> list[ColorSensorSpec]:
     return points
 
 
-def _see_line(
-    records: Array, spec: RunSpec, mat: Field, points: Sequence[ColorSensorSpec]
-) -> _Seen | None:
+def _see_line(data: RunData, points: Sequence[ColorSensorSpec]) -> _Seen | None:
     """Return at which ticks the line was under each point.
 
     The result is None if all that the points saw of the mat is about equally bright.
     """
-    on = [is_on_mat(records, point) for point in points]
-    light = [compute_reflected_percent(records, point, spec, mat) for point in points]
+    on = [is_on_mat(data.records, point) for point in points]
+    light = [_measure_percent(data, point, data.records) for point in points]
     there = np.concatenate([percent[is_on] for percent, is_on in zip(light, on, strict=True)])
     if not len(there) or np.ptp(there) < _MIN_CONTRAST_PC:
         return None
@@ -310,8 +287,7 @@ class _Way:
         for name in ("x_mm", "y_mm", "heading_deg"):
             moved[1:] |= np.diff(records[name]) != 0
         self._ticks = np.flatnonzero(moved)
-        turned_deg = np.diff(records["heading_deg"], prepend=records["heading_deg"][:1])
-        self._turned_deg = ((turned_deg + 180) % 360 - 180)[moved]
+        self._turned_deg = np.append(0.0, compute_turns_deg(records))[moved]
         self._is_dark = is_dark[moved]
         self._starts, self._ends = find_spans(self._is_dark).T
         """Where the stretches over the dark begin and end, the end exclusive."""

@@ -10,7 +10,6 @@ import numpy as np
 
 from tuisim.engine.core.conditions import COMPARE
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
-from tuisim.engine.runs.arrays import find_spans
 from tuisim.programs import remarks
 from tuisim.programs.facts import LoopEnd
 from tuisim.tasks.reasons.read_columns import LIGHT_COLUMNS
@@ -96,11 +95,9 @@ def _extend_way(record: Array) -> Array:
 
 def list_spins(data: RunData) -> Iterator[Unmet]:
     """Yield a fault for each turn on the spot at a place where the program says that it drives straight on."""
-    lines = data.records["line"]
     for spin in remarks.list_spins(data.facts.tree, data.facts.remarks):
         # The line after those that start motors is the one that waits.
-        is_in = (lines >= spin.first_line) & (lines <= spin.last_line + 1)
-        for start, end in find_spans(is_in).tolist():
+        for start, end in data.find_stays(spin.first_line, spin.last_line + 1):
             way = data.records[start:end]
             turned_deg = float(np.ptp(way["heading_deg"]))
             spot_mm = max(np.ptp(way["x_mm"]), np.ptp(way["y_mm"]))
@@ -114,11 +111,8 @@ def list_spins(data: RunData) -> Iterator[Unmet]:
 
 def list_curves(data: RunData) -> Iterator[Unmet]:
     """Yield a fault for each move in a curve at a place where a comment says that the robot drives straight on."""
-    lines = data.records["line"]
     for curve in remarks.list_curves(data.facts.tree, data.facts.remarks):
-        for start, end in find_spans(
-            (lines >= curve.first_line) & (lines <= curve.last_line + 1)
-        ).tolist():
+        for start, end in data.find_stays(curve.first_line, curve.last_line + 1):
             turned_deg = float(np.ptp(data.records["heading_deg"][start:end]))
             if turned_deg >= _MIN_TURN_DEG:
                 text = f"the robot turned by {turned_deg:.0f}° here: {curve.words}"
@@ -130,9 +124,8 @@ def list_wrong_sides(data: RunData) -> Iterator[Unmet]:
 
     It is the wrong side if the name of the function, or a comment, says left for a turn to the right, or the reverse.
     """
-    lines = data.records["line"]
     for turn in remarks.list_named_turns(data.facts.tree, data.facts.remarks):
-        spans = find_spans((lines >= turn.first_line) & (lines <= turn.last_line)).tolist()
+        spans = data.find_stays(turn.first_line, turn.last_line)
         ways = [_measure_turn(data.records[start:end]) for start, end in spans]
         # A positive turn is one to the left.
         wrong_deg = [deg if turn.aim == "right" else -deg for deg in ways]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,12 +10,11 @@ from numpy.typing import NDArray
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.columns import COLOR_NAMES
 from tuisim.engine.core.sensors.color import WHITE_CODE, find_color_code, find_response
-from tuisim.engine.runs.sensor_arrays import measure_quiet_color
 from tuisim.programs.facts import LoopEnd
 from tuisim.tasks.reasons.lost_line import is_on_mat
+from tuisim.tasks.reasons.run_data import RunData
 
 if TYPE_CHECKING:
-    from tuisim.engine.core.field import Field
     from tuisim.engine.core.spec import ColorSensorSpec, RunSpec
 
     Array = NDArray[Any]
@@ -44,33 +42,25 @@ class OneColor:
     """When the program first read it off the mat for good; None if it stayed on it."""
 
 
-def find_one_color(
-    records: Array, spec: RunSpec, mat: Field, read_ticks: Mapping[str, Array]
-) -> OneColor | None:
+def find_one_color(data: RunData) -> OneColor | None:
     """Return the colour that a light sensor saw all the time while the robot drove far; None if there is none.
 
     Only sensors that the program reads are considered. The result is also None if one of them saw several colours, or
     if the program read too seldom.
-
-    Args:
-        records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
-        spec: The run.
-        mat: Its mat, prepared for its sensors.
-        read_ticks: The ticks at which the program read each light sensor, by name, in ascending order.
     """
+    records, spec = data.records, data.run.spec
     step_mm = np.hypot(np.diff(records["x_mm"], prepend=0), np.diff(records["y_mm"], prepend=0))
     step_mm[0] = 0
     first: OneColor | None = None
     for sensor in spec.robot.color_sensors:
-        all_ticks = read_ticks[sensor.name]
+        all_ticks = data.light_ticks[sensor.name]
         ticks = all_ticks[is_on_mat(records, sensor)[all_ticks]]
         if not len(ticks):
             continue
         later = all_ticks[all_ticks > ticks[-1]]
         way_mm = step_mm[ticks[0] : ticks[-1] + 1]
-        columns = measure_quiet_color(records[ticks], sensor, spec, mat).values()
-        channels = np.array([*columns])
-        if not (name := name_only_color(channels, sensor, spec)):
+        name = name_only_color(data.measure_channels(sensor, records[ticks]), sensor, spec)
+        if not name:
             return None
         drives = (step_mm[ticks] > 0).sum() >= _MIN_READINGS and way_mm.sum() >= _MIN_WAY_MM
         if drives and (first is None or ticks[0] < first.tick):

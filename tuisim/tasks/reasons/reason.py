@@ -280,11 +280,10 @@ def _find_lost(data: RunData, has_waited: bool) -> Iterator[Reason]:
             break
     if run.telemetry.count < 2 or not data.decides_by_light:
         return
-    seen_by_eyes = data.records, run.spec, data.mat, data.light_ticks
-    for lost in find_lost_lines(*seen_by_eyes):
+    for lost in find_lost_lines(data):
         if line := find_steering(data.facts.tree, run.telemetry.record(lost.tick).line):
             yield _describe_loss(data, lost, line)
-    if not has_waited and (seen := find_one_color(*seen_by_eyes)):
+    if not has_waited and (seen := find_one_color(data)):
         text = f"from here on {data.name_eye(seen.sensor)} saw only {seen.color}"
         if seen.left_tick is not None:
             text += f", until it left the mat at {seen.left_tick / data.hz:.2f} s"

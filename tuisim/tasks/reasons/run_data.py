@@ -195,6 +195,23 @@ class RunData:
             self.facts.find_question(line).decides for line in lines[:_MAX_READING_LINES].tolist()
         )
 
+    def find_stays(self, first_line: int, last_line: int) -> list[list[int]]:
+        """Return each time that the program was in some of its lines: the first tick, and the tick after the last."""
+        # Imported on demand, as numpy is.
+        from tuisim.engine.runs.arrays import find_spans
+
+        lines = self.records["line"]
+        stays: list[list[int]] = find_spans((lines >= first_line) & (lines <= last_line)).tolist()
+        return stays
+
+    def measure_channels(self, eye: ColorSensorSpec, records: Array) -> Array:
+        """Return red, green and blue as a light sensor would read them without noise in some records, shape (3, n)."""
+        import numpy as np
+
+        from tuisim.engine.runs.sensor_arrays import measure_quiet_color
+
+        return np.array([*measure_quiet_color(records, eye, self.run.spec, self.mat).values()])
+
     def measure(self, loop: LoopEnd, stay: tuple[int, int]) -> Series | None:
         """Return the values that the program has read for a comparison.
 
@@ -348,6 +365,14 @@ def list_distinct(values: Array) -> Array:
     is_first[1:] = ordered[1:] != ordered[:-1]
     distinct: Array = ordered[is_first]
     return distinct
+
+
+def compute_turns_deg(records: Array) -> Array:
+    """Return by how many degrees the robot turned from each record of telemetry to the next one, left is positive."""
+    import numpy as np
+
+    turns_deg: Array = (np.diff(records["heading_deg"]) + 180) % 360 - 180
+    return turns_deg
 
 
 def describe_place(port: str) -> str:

@@ -11,12 +11,10 @@ from numpy.typing import NDArray
 from tuisim.engine.core.columns import COLOR_NAMES
 from tuisim.engine.core.conditions import COMPARE
 from tuisim.engine.core.sensors.color import WHITE, LightRead, find_color_code
-from tuisim.engine.runs.arrays import find_spans
-from tuisim.engine.runs.sensor_arrays import measure_quiet_color
 from tuisim.programs.facts import ProgramThreshold
 from tuisim.programs.moves import WheelTurn, list_wheel_turns
 from tuisim.tasks.reasons.lost_line import MIN_READINGS, is_on_mat
-from tuisim.tasks.reasons.run_data import RunData, list_distinct
+from tuisim.tasks.reasons.run_data import RunData, compute_turns_deg, list_distinct
 from tuisim.tasks.reasons.unmet import Unmet
 
 if TYPE_CHECKING:
@@ -44,9 +42,7 @@ def _measure_turns(data: RunData, turn: WheelTurn) -> Unmet | None:
     The result is None if the call never ran or did not turn the robot on the spot, or if the robot's angle seems
     intended.
     """
-    lines = data.records["line"]
-    is_on = (lines >= turn.first_line) & (lines <= turn.last_line)
-    spans = find_spans(is_on).tolist()
+    spans = data.find_stays(turn.first_line, turn.last_line)
     if not spans:
         return None
     first, end = spans[0]
@@ -54,13 +50,12 @@ def _measure_turns(data: RunData, turn: WheelTurn) -> Unmet | None:
     wheels = [span[f"{side}_position_deg"] for side in ("left", "right")]
     left_deg, right_deg = (float(positions[-1] - positions[0]) for positions in wheels)
     wheel_deg = abs(left_deg - right_deg) / 2
-    steps_deg = (np.diff(span["heading_deg"]) + 180) % 360 - 180
     # The numbers of a call may mean speeds or steering, so the wheels' own turns show whether it is on the spot.
     is_on_the_spot = abs(left_deg + right_deg) <= 2 * (1 - _MIN_SHARE) * wheel_deg
     if not is_on_the_spot or wheel_deg < turn.angle_deg * _MIN_SHARE:
         return None
     # The line may have run several times in a row, so the robot's turn is scaled to one call.
-    robot_deg = abs(float(steps_deg.sum())) / wheel_deg * turn.angle_deg
+    robot_deg = abs(float(compute_turns_deg(span).sum())) / wheel_deg * turn.angle_deg
     off_deg = abs(robot_deg - round(robot_deg / _ROUND_DEG) * _ROUND_DEG)
     if robot_deg < 1 or (robot_deg > _ROUND_DEG / 2 and off_deg <= _NEAR_DEG):
         return None
@@ -138,11 +133,9 @@ def _list_passes(
 def _measure(data: RunData, sensor: ColorSensorSpec, read: LightRead) -> Array:
     """Return what a program would have read from a colour sensor at each tick without noise, shape (n,)."""
     spec = data.run.spec
-    red, green, blue = measure_quiet_color(data.records, sensor, spec, data.mat).values()
+    red, green, blue = channels = data.measure_channels(sensor, data.records)
     if read.is_color:
-        colors, places = np.unique(
-            np.stack([red, green, blue]).astype(int), axis=1, return_inverse=True
-        )
+        colors, places = np.unique(channels.astype(int), axis=1, return_inverse=True)
         return np.array([find_color_code(*color) for color in colors.T.tolist()])[places]
     light = (red + green + blue) / 3 if read is LightRead.MEAN else red
     value: Array = light * read.find_white(spec.profile.reflected_max) / WHITE
