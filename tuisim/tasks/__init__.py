@@ -2,7 +2,6 @@
 
 __all__ = [
     "execute",
-    "goals.condition",
     "goals.files",
     "goals.judge",
     "goals.judgement",

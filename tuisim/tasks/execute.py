@@ -176,9 +176,7 @@ def build_unjudged(task: Task, why: str) -> Result:
         task: The task of the run.
         why: The reason, as a sentence.
     """
-    return Result(
-        task.index, task.parameters, "", 2, why, why, 0, 0, 0.0, math.nan, math.nan, math.nan
-    )
+    return Result(task.index, task.parameters, "", 2, why, why)
 
 
 def build_unknown_result(task: Task, end: End, why: str) -> Result:
@@ -189,9 +187,7 @@ def build_unknown_result(task: Task, end: End, why: str) -> Result:
         end: How the run ended.
         why: Why there is no recording, as a sentence.
     """
-    return Result(
-        task.index, task.parameters, end.value, 1, why, why, 0, 0, 0.0, math.nan, math.nan, math.nan
-    )
+    return Result(task.index, task.parameters, end.value, 1, why, why)
 
 
 def _build_result(

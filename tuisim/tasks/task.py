@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import field
 from enum import StrEnum
@@ -86,12 +87,12 @@ class Result:
     summary: str
     error: str
     """The program's traceback, or why the run could not be started."""
-    error_line: int
-    ticks: int
-    time_s: float
-    x_mm: float
-    y_mm: float
-    heading_deg: float
+    error_line: int = 0
+    ticks: int = 0
+    time_s: float = 0.0
+    x_mm: float = math.nan
+    y_mm: float = math.nan
+    heading_deg: float = math.nan
     variables: Mapping[str, VariableStatistics] = field(default_factory=dict)
     """Statistics by name of sample, in the order of the first samples."""
     judgements: tuple[Judgement, ...] = ()

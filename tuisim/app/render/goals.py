@@ -11,7 +11,6 @@ from rich.style import Style
 from tuisim.app import design
 from tuisim.base import palette
 from tuisim.base.data_class import dataclass
-from tuisim.tasks.goals.condition import ConditionKind
 from tuisim.tasks.goals.judgement import GoalState, Judgement, compute_max_points, sum_points
 from tuisim.tasks.goals.spec import Goal
 from tuisim.terminal.text_runs import Line, cut
@@ -204,7 +203,7 @@ def _detail(judgement: Judgement, state: GoalState, width: int) -> Iterator[Line
 
 def _describe_moment(judgement: Judgement) -> str:
     """Return in words when and where a goal was decided; empty if it is not decided."""
-    if all(part.KIND is ConditionKind.FIXED for part in judgement.goal.parts):
+    if judgement.is_of_text:
         return "by the program's text"
     if (event := judgement.event) is None:
         return ""

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 from typing import Any
 
@@ -424,14 +425,18 @@ def _check_names(goals: Sequence[Goal], places: Sequence[Location]) -> None:
                 raise _find_reference(goal, name, location).wrong(
                     f"there is no goal {name!r}", nearest(name, by_name)
                 )
-    checked: set[str] = set()
-    for goal, location in zip(goals, places, strict=True):
-        circle = _find_circle(goal.name, by_name, (), checked)
-        if circle:
-            words = " needs ".join(f"{name!r}" for name in circle)
-            raise _find_reference(goal, circle[1], location).wrong(
-                f"the goals need each other: {words}"
-            )
+    try:
+        TopologicalSorter({goal.name: goal.needs for goal in goals}).prepare()
+    except CycleError as error:
+        # The first and the last name of a circle are the same, and each goal is needed by the next one.
+        circle = error.args[1][:0:-1]
+        first = min(range(len(circle)), key=lambda index: [*by_name].index(circle[index]))
+        circle = [*circle[first:], *circle[: first + 1]]
+        words = " needs ".join(f"{name!r}" for name in circle)
+        location = places[[*by_name].index(circle[0])]
+        raise _find_reference(by_name[circle[0]], circle[1], location).wrong(
+            f"the goals need each other: {words}"
+        ) from None
 
 
 def _find_reference(goal: Goal, name: str, location: Location) -> Location:
@@ -451,28 +456,6 @@ def _find_reference(goal: Goal, name: str, location: Location) -> Location:
     )
     key = next(limits, next(combined, ""))
     return location.at(key) if key else location
-
-
-def _find_circle(
-    name: str, goals: Mapping[str, Goal], above: tuple[str, ...], checked: set[str]
-) -> tuple[str, ...]:
-    """Return the names of goals that refer to each other in a circle, reached from a goal; empty if there is no circle.
-
-    Args:
-        name: The name of the goal from which to follow the references.
-        goals: All goals, by name.
-        above: The names of the goals through whose references this goal was reached.
-        checked: Names of goals from which no circle can be reached; the function adds to it.
-    """
-    if name in above:
-        return (*above[above.index(name) :], name)
-    if name in checked:
-        return ()
-    for other in goals[name].needs:
-        if circle := _find_circle(other, goals, (*above, name), checked):
-            return circle
-    checked.add(name)
-    return ()
 
 
 _STATEMENT = re.compile(r"[ \t]*(?:[\w\"'-].*=|\[.*\][ \t]*(?:#.*)?$)")

@@ -8,6 +8,7 @@ from enum import StrEnum
 from typing import TYPE_CHECKING
 
 from tuisim.base.data_class import dataclass
+from tuisim.tasks.goals.condition import ConditionKind
 
 if TYPE_CHECKING:
     from tuisim.tasks.goals.spec import Goal
@@ -65,6 +66,11 @@ class Judgement:
         if self.state is GoalState.UNKNOWN:
             return False
         return (self.state is GoalState.MET) is (self.goal.points >= 0)
+
+    @property
+    def is_of_text(self) -> bool:
+        """Whether the program's text alone decides the goal."""
+        return all(part.KIND is ConditionKind.FIXED for part in self.goal.parts)
 
     @property
     def event(self) -> Change | None:

@@ -5,7 +5,10 @@ from __future__ import annotations
 import math
 import re
 from bisect import bisect_right
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from itertools import islice, pairwise
+from typing import TypeVar
 
 from tuisim.base.errors import counted
 from tuisim.engine.core.profile import NS_PER_S
@@ -81,32 +84,54 @@ def find_printed(condition: PrintCondition, evidence: Evidence, span: EvidenceSp
     for count, pattern in enumerate(condition.lines):
         search = evidence.search(pattern)
         start = next_place if condition.in_order else 0
-        fault = Finding()
         fitting = (place for place in range(start, len(rows)) if search(rows[place][1].text))
-        for place in islice(fitting, _MAX_TRIED):
-            row = rows[place][1]
-            problem = _explain_fault(condition, count, row, since, evidence)
-            if not problem:
-                break
-            fault = fault if fault.reason else Finding(None, problem, row.line)
-        else:
+        explain = partial(_explain_fault, condition, count, since=since, evidence=evidence)
+        place = _find_good_place(fitting, rows, explain)
+        if isinstance(place, Finding):
+            return place
+        if place is None:
             # The finding names the program's line that printed the quoted text.
             about = rows[-1][1].line if rows and line is None else line
-            if fault.reason:
-                return fault
             return Finding(
                 None,
                 _explain_missing_line(condition, pattern, rows, line is not None, evidence, span),
                 about,
             )
         next_place = place + 1
-        line = row.line
-        since = row.tick
+        line = rows[place][1].line
+        since = rows[place][1].tick
         last = max(last, place)
     if condition.once and (open_or_missed := _check_once(condition, rows, span, evidence)):
         return open_or_missed
     number, row = rows[last]
     return _report_printed(EvidencePoint(row.tick, number), row.line, condition.once, evidence)
+
+
+_Printed = TypeVar("_Printed", OutputRow, Sample)
+
+
+def _find_good_place(
+    places: Iterable[int],
+    printed: Sequence[tuple[int, _Printed]],
+    explain: Callable[[_Printed], str],
+) -> int | Finding | None:
+    """Return the first of some places with a line or sample that has no fault; else the fault at the first place.
+
+    The result is None if there are no places.
+
+    Args:
+        places: The indices of the lines or samples to try; at most `_MAX_TRIED` are tried.
+        printed: All lines or samples, each with the index of its row.
+        explain: Returns in a sentence what is wrong with a line or sample; empty if nothing is.
+    """
+    fault = None
+    for place in islice(places, _MAX_TRIED):
+        row = printed[place][1]
+        problem = explain(row)
+        if not problem:
+            return place
+        fault = fault or Finding(None, problem, row.line)
+    return fault
 
 
 def _check_once(
@@ -258,24 +283,17 @@ def find_levels(condition: LogCondition, evidence: Evidence, span: EvidenceSpan)
     last = -1
     for count, level in enumerate(condition.levels):
         start = next_place if condition.in_order else 0
-        fault = Finding()
         near = (
             place
             for place in range(start, len(samples))
             if _is_near(samples[place][1], level, condition)
         )
-        for place in islice(near, _MAX_TRIED):
-            sample = samples[place][1]
-            problem = _explain_unmeasured(condition, count, sample, evidence)
-            if not problem:
-                break
-            fault = fault if fault.reason else Finding(None, problem, sample.line)
-        else:
-            return (
-                fault
-                if fault.reason
-                else _find_missing_level(condition, count, samples, start, last, evidence)
-            )
+        explain = partial(_explain_unmeasured, condition, count, evidence=evidence)
+        place = _find_good_place(near, samples, explain)
+        if isinstance(place, Finding):
+            return place
+        if place is None:
+            return _find_missing_level(condition, count, samples, start, last, evidence)
         next_place = place + 1
         last = max(last, place)
     number, sample = samples[last]

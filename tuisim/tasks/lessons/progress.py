@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
-from dataclasses import asdict, field, replace
+from dataclasses import field, replace
 from datetime import UTC, datetime
 from enum import StrEnum
 from pathlib import Path
 from typing import Any
+
+import msgspec
 
 from tuisim.base.atomic import make_private_folder, replacing
 from tuisim.base.data_class import dataclass
@@ -115,22 +116,11 @@ def load_progress() -> dict[str, LessonProgress]:
     except OSError as error:
         raise ConfigError(f"cannot be read: {error.strerror or error}", file=str(path)) from None
     try:
-        return {name: _parse_progress(entry) for name, entry in json.loads(text).items()}
-    except (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError):
+        return msgspec.json.decode(text, type=dict[str, LessonProgress])
+    except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError):
         raise ConfigError(
             "is damaged", "to start all lessons again, delete it", file=str(path)
         ) from None
-
-
-def _parse_progress(data: Mapping[str, Any]) -> LessonProgress:
-    steps = {str(name): _step(entry) for name, entry in data["steps"].items()}
-    return LessonProgress(steps, str(data.get("opened_at", "")))
-
-
-def _step(data: Mapping[str, Any]) -> StepProgress:
-    return StepProgress(
-        StepState(data["state"]), str(data["at"]), int(data["tries"]), int(data["hints"])
-    )
 
 
 def save_progress(lesson: str, progress: LessonProgress) -> None:
@@ -147,15 +137,11 @@ def save_progress(lesson: str, progress: LessonProgress) -> None:
     """
     every = {**load_progress(), lesson: progress}
     path = find_folder() / _FILE
-    text = json.dumps(
-        {name: asdict(lesson_progress) for name, lesson_progress in every.items()},
-        indent=1,
-        ensure_ascii=False,
-    )
+    text = msgspec.json.format(msgspec.json.encode(every), indent=1)
     try:
         make_private_folder(path.parent)
         with replacing(path, owner_only=True) as file:
-            file.write(text.encode() + b"\n")
+            file.write(text + b"\n")
     except OSError as error:
         raise ConfigError(
             f"progress cannot be saved: {error.strerror or error}", file=str(path)

@@ -17,7 +17,6 @@ from tuisim.base.errors import printable, shortened
 from tuisim.base.faults import UNJUDGED
 from tuisim.base.source import source_lines, user_python_path
 from tuisim.engine.protocol import End
-from tuisim.tasks.goals.condition import ConditionKind
 from tuisim.tasks.goals.judge import UNCOMPILED
 from tuisim.tasks.goals.judgement import Change, GoalState, Judgement
 from tuisim.tasks.goals.spec import AllOf
@@ -137,6 +136,7 @@ def build_outcome(
         state = judgement.state
         met = state is GoalState.MET
         cause = _find_cause(judgement, judgements)
+        is_unplaced = result.end == End.FALSIFIED or judgement.is_of_text
         goals.append(
             GoalOutcome(
                 name,
@@ -145,7 +145,7 @@ def build_outcome(
                 0 if met else cause.line,
                 is_penalty=judgement.goal.points < 0,
                 is_unknown=state is GoalState.UNKNOWN,
-                event=None if result.end == End.FALSIFIED else _find_event(judgement),
+                event=None if is_unplaced else judgement.event,
             )
         )
     return Outcome(
@@ -274,12 +274,6 @@ def _find_cause(judgement: Judgement, judgements: Mapping[str, Judgement]) -> Ju
             if judgements[name].state is not GoalState.MET:
                 return _find_cause(judgements[name], judgements)
     return judgement
-
-
-def _find_event(judgement: Judgement) -> Change | None:
-    """Return when and where a goal was decided; None if the program's text alone decides it."""
-    is_of_the_text = all(part.KIND is ConditionKind.FIXED for part in judgement.goal.parts)
-    return None if is_of_the_text else judgement.event
 
 
 def _describe_failure(result: Result) -> str:

@@ -16,7 +16,6 @@ from tuisim.base.source import Program
 from tuisim.tasks.marks.files import LEFT_OUT, copy_file, copy_tree
 from tuisim.tasks.marks.students import SUFFIX, Student
 
-_PIECE = 1 << 20
 _MAX_MODULES_BYTES = 1 << 20
 
 
@@ -68,7 +67,8 @@ def compute_digest(student: Student) -> str:
             if path.is_symlink():
                 digest.update(hashlib.sha256(os.fsencode(os.readlink(path))).digest())
             else:
-                digest.update(_hash_file(path))
+                with open_regular(path, follow_links=True) as file:
+                    digest.update(hashlib.file_digest(file, "sha256").digest())
         except OSError as error:
             digest.update(str(error.errno).encode())
     return digest.hexdigest()
@@ -84,14 +84,6 @@ def read_modules(student: Student) -> Iterator[str]:
                 data = read_regular(path, left)
                 left -= len(data)
                 yield data.decode("utf-8", "replace")
-
-
-def _hash_file(path: Path) -> bytes:
-    digest = hashlib.sha256()
-    with open_regular(path, follow_links=True) as file:
-        while piece := file.read(_PIECE):
-            digest.update(piece)
-    return digest.digest()
 
 
 def _list_files(path: Path) -> Iterator[Path]:
