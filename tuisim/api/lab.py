@@ -27,7 +27,7 @@ from tuisim.settings.build import build_run_spec, extract_settings, list_ineffec
 from tuisim.settings.options import Settings
 from tuisim.settings.robots import ROBOTS
 from tuisim.tasks.goals.files import GoalsFile
-from tuisim.tasks.goals.live import LiveGoals, check_goals
+from tuisim.tasks.goals.live import LiveGoals
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -80,7 +80,7 @@ class Lab:
         in_world = read_world(world, None)
         if goals is not None:
             task = GoalsFile.load(goals)
-            check_goals(task.goals)
+            LiveGoals.check(task.goals)
             self._goals = task.goals
             in_world = task.settings if world is None else in_world
         settings = Settings.merge(in_world, chosen)

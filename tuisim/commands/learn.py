@@ -14,12 +14,7 @@ from tuisim.commands.echo import AS_JSON, Progress, draw_table, echo, echo_json,
 from tuisim.engine.core.profile import Library
 from tuisim.guide.markdown import render_plain_text
 from tuisim.settings.command_line import Group, WordType, argument, choice, command, option
-from tuisim.tasks.lessons.catalogue import (
-    find_lesson,
-    find_lesson_paths,
-    find_shipped_paths,
-    find_telling,
-)
+from tuisim.tasks.lessons.catalogue import find_lesson, find_lesson_paths
 from tuisim.tasks.lessons.files import load_lesson
 from tuisim.tasks.lessons.progress import LessonProgress, StepState, load_progress
 from tuisim.tasks.lessons.spec import Lesson, LessonStep, QuestionCheck, RunCheck
@@ -67,8 +62,7 @@ def open_lesson(word: str | None, folder: str | None, library: str | None, as_te
     if not word:
         lesson = _choose_next_lesson(load_all(folder), progress)
     else:
-        path = find_lesson(word, folder, learn.listing)
-        lesson = load_lesson(find_telling(path, Library(library), folder) if library else path)
+        lesson = load_lesson(find_lesson(word, folder, learn.listing, library))
     if not in_app:
         echo_lines(format_lesson(lesson, progress.get(lesson.name, LessonProgress())))
         return 0
@@ -238,7 +232,7 @@ def check(paths: Sequence[str], no_runs: bool, strict: bool) -> int:
     """
     from tuisim.tasks.lessons.trial import find_faults
 
-    files = [find_lesson(path) for path in paths] or list(find_shipped_paths().values())
+    files = [find_lesson(path) for path in paths] or list(find_lesson_paths("").values())
     lessons = [load_lesson(path) for path in files]
     is_bad = False
     with Progress("learn check"):

@@ -276,7 +276,7 @@ def _describe_task(view: LessonView, step: LessonStep, away: Away) -> str:
         case ShowCheck(panel=panel):
             words = f"Next: open the panel {PANELS[panel].title}."
         case check:
-            words = f"Next: {check.words}."
+            words = f"Next: {check.WORDS.format(check)}."
     return words
 
 

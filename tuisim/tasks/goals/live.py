@@ -58,6 +58,18 @@ class LiveGoals:
         self._run = run
         self._open = {each.goal.name for each in self._judge() if not each.is_good}
 
+    @staticmethod
+    def check(goals: Sequence[Goal]) -> None:
+        """Check that all goals can be judged in a simulation without a program.
+
+        Raises:
+            ConfigError: a goal is about a program.
+        """
+        for goal in goals:
+            if any(map(needs_program, goal.parts)):
+                hint = "a Lab has none; take goals that are about the robot"
+                raise ConfigError(f"{goal.name!r} is about a program", hint, key="goals")
+
     def judge(self) -> tuple[float, bool]:
         """Return the points of the run so far, and whether all goals open at the beginning are now met or lost.
 
@@ -74,18 +86,6 @@ class LiveGoals:
     def _is_lost(self, judgement: Judgement) -> bool:
         """Return whether a goal was missed before the end of the simulation, so that it cannot be met later."""
         return judgement.state is GoalState.MISSED and judgement.changes[-1].tick < self._run.tick
-
-
-def check_goals(goals: Sequence[Goal]) -> None:
-    """Check that all goals can be judged in a simulation without a program.
-
-    Raises:
-        ConfigError: a goal is about a program.
-    """
-    for goal in goals:
-        if any(map(needs_program, goal.parts)):
-            hint = "a Lab has none; take goals that are about the robot"
-            raise ConfigError(f"{goal.name!r} is about a program", hint, key="goals")
 
 
 def needs_program(condition: Condition) -> bool:

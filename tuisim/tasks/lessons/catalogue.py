@@ -159,7 +159,8 @@ def find_lesson_paths(folder: Path | str | None = None) -> dict[str, Path]:
     A lesson in the folder replaces tuisim's lesson of the same name.
 
     Args:
-        folder: The folder; None for the folder in the environment variable `TUISIM_LESSONS`, if it is set.
+        folder: The folder; None for the folder in the environment variable `TUISIM_LESSONS`, if it is set; empty for
+            no folder.
 
     Raises:
         ConfigError: the folder does not exist, or has no lessons.
@@ -188,17 +189,28 @@ def _find_folder_paths(folder: Path) -> dict[str, Path]:
     }
 
 
-def find_lesson(word: str, folder: Path | str | None = None, others: Iterable[str] = ()) -> Path:
+def find_lesson(
+    word: str,
+    folder: Path | str | None = None,
+    others: Iterable[str] = (),
+    library: str | None = None,
+) -> Path:
     """Return the file of a lesson.
 
     Args:
         word: The lesson's name, its number in the list, or the path of its file.
         folder: A folder with further lessons; None for the one in the environment variable `TUISIM_LESSONS`.
         others: Other words that the error may propose.
+        library: The library, one of `Library`, whose version of the lesson to find; None for the lesson itself.
 
     Raises:
-        ConfigError: there is no such lesson.
+        ConfigError: there is no such lesson, or no version of it for the library.
     """
+    path = _find_path(word, folder, others)
+    return path if library is None else _find_telling(path, Library(library), folder)
+
+
+def _find_path(word: str, folder: Path | str | None, others: Iterable[str]) -> Path:
     if os.sep in word or word.lower().endswith((SUFFIX, *FILE_SUFFIXES)):
         return user_path(word)
     paths = find_lesson_paths(folder)
@@ -219,7 +231,7 @@ def find_lesson(word: str, folder: Path | str | None = None, others: Iterable[st
     return paths[word]
 
 
-def find_telling(lesson: Path, library: Library, folder: Path | str | None = None) -> Path:
+def _find_telling(lesson: Path, library: Library, folder: Path | str | None) -> Path:
     """Return the file with a lesson's version for a library, such as Pybricks; this may be the lesson's own file.
 
     Args:

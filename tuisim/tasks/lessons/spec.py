@@ -127,6 +127,8 @@ class WatchCheck:
     """Check of a step: the student watches a variable or an expression while the program is paused."""
 
     SHORT: ClassVar[str] = "expression"
+    WORDS: ClassVar[str] = "watch {0.expression}"
+    """What the student has to do for the check, in words; attributes of the check stand in braces."""
     EXCLUDES: ClassVar[Mapping[Way, str]] = {
         Way.LITERAL: "the value is that of the paused program",
         Way.SENSOR: "a variable is looked at, not a sensor",
@@ -136,17 +138,14 @@ class WatchCheck:
 
     expression: str
 
-    @property
-    def words(self) -> str:
-        """What the student has to do for the check, in words."""
-        return f"watch {self.expression}"
-
 
 @dataclass(frozen=True, slots=True)
 class BreakCheck:
     """Check of a step: a run stops at a breakpoint."""
 
     SHORT: ClassVar[str] = "matches"
+    WORDS: ClassVar[str] = "let a run stop at the breakpoint"
+    """What the student has to do for the check, in words; attributes of the check stand in braces."""
     EXCLUDES: ClassVar[Mapping[Way, str]] = {
         Way.LITERAL: "a run must really stop at it",
         Way.SENSOR: "the breakpoint's text says what it looks at",
@@ -160,17 +159,14 @@ class BreakCheck:
     def __post_init__(self) -> None:
         require_regex(self.matches, "matches")
 
-    @property
-    def words(self) -> str:
-        """What the student has to do for the check, in words."""
-        return "let a run stop at the breakpoint"
-
 
 @dataclass(frozen=True, slots=True)
 class ExportCheck:
     """Check of a step: the student exports a log."""
 
     SHORT: ClassVar[str] = "suffix"
+    WORDS: ClassVar[str] = "export to a {0.suffix} file"
+    """What the student has to do for the check, in words; attributes of the check stand in braces."""
     EXCLUDES: ClassVar[Mapping[Way, str]] = {
         Way.LITERAL: "a file must really be written",
         Way.SENSOR: "what is exported was measured by a run before",
@@ -181,17 +177,14 @@ class ExportCheck:
     suffix: str
     """What the name of the file ends in, such as `.csv`."""
 
-    @property
-    def words(self) -> str:
-        """What the student has to do for the check, in words."""
-        return f"export to a {self.suffix} file"
-
 
 @dataclass(frozen=True, slots=True)
 class NoteCheck:
     """Check of a step: the student writes a note on the run; the step can require a band with a certain level."""
 
     SHORT: ClassVar[str] = "matches"
+    WORDS: ClassVar[str] = "write your note"
+    """What the student has to do for the check, in words; attributes of the check stand in braces."""
     EXCLUDES: ClassVar[Mapping[Way, str]] = {
         Way.SENSOR: "the note is on samples of the run in view",
         Way.ORDER: "without a run there is nothing to note",
@@ -206,17 +199,14 @@ class NoteCheck:
     def __post_init__(self) -> None:
         require_regex(self.matches, "matches")
 
-    @property
-    def words(self) -> str:
-        """What the student has to do for the check, in words."""
-        return "write your note"
-
 
 @dataclass(frozen=True, slots=True)
 class VisitCheck:
     """Check of a step: the student goes back to a past instant of a run."""
 
     SHORT: ClassVar[str] = ""
+    WORDS: ClassVar[str] = "go to an instant between {0.from_s:g} and {0.to_s:g} s"
+    """What the student has to do for the check, in words; attributes of the check stand in braces."""
     EXCLUDES: ClassVar[Mapping[Way, str]] = {
         Way.LITERAL: "the instant must really be in view",
         Way.SENSOR: "the recording is looked at",
@@ -232,11 +222,6 @@ class VisitCheck:
             raise ConfigError(
                 f"must be less than to_s, {self.to_s:g}, got {self.from_s:g}", key="from_s"
             )
-
-    @property
-    def words(self) -> str:
-        """What the student has to do for the check, in words."""
-        return f"go to an instant between {self.from_s:g} and {self.to_s:g} s"
 
 
 @dataclass(frozen=True, slots=True)

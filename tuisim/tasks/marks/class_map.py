@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
 
 from tuisim.analysis.pins import Dot, Picture, clamp_to_picture, encode_picture
 from tuisim.base.data_class import dataclass
@@ -28,38 +28,26 @@ class Miss:
     reason: str
 
 
-@dataclass(frozen=True, slots=True)
-class MissesOfRun:
-    """A stored run, with the goals that it missed, for the map of the class."""
-
-    run: StoredRun
-    misses: tuple[Miss, ...]
-
-    @property
-    def mat(self) -> str:
-        """The name of the run's mat, or the path of its image."""
-        return self.run.spec.world.background
-
-
-def build_class_maps(runs: Sequence[MissesOfRun]) -> list[Picture]:
+def build_class_maps(runs: Iterable[tuple[StoredRun, Sequence[Miss]]]) -> list[Picture]:
     """Return a picture of each mat with the places where runs missed goals; the mat with the most misses first.
 
     A mat that can no longer be drawn is left out: the reports of the runs on it say why.
+
+    Args:
+        runs: Stored runs, each with the goals that it missed.
     """
-    count = Counter[str]()
-    for run_misses in runs:
-        count[run_misses.mat] += len(run_misses.misses)
-    maps = [
-        _build_map([run_misses for run_misses in runs if run_misses.mat == mat])
-        for mat, number in count.most_common()
-        if number
-    ]
+    first_runs: dict[str, StoredRun] = {}
+    misses: dict[str, list[Miss]] = defaultdict(list)
+    for run, missed in runs:
+        mat = run.spec.world.background
+        first_runs.setdefault(mat, run)
+        misses[mat] += missed
+    mats = sorted(filter(misses.__getitem__, misses), key=lambda mat: -len(misses[mat]))
+    maps = [_build_map(first_runs[mat], misses[mat]) for mat in mats]
     return [picture for picture in maps if picture is not None]
 
 
-def _build_map(runs: Sequence[MissesOfRun]) -> Picture | None:
-    first = runs[0].run
-    misses = [miss for run_misses in runs for miss in run_misses.misses]
+def _build_map(first: StoredRun, misses: Sequence[Miss]) -> Picture | None:
     try:
         picture = draw_world(first.spec, first.find_mat_files().read_pixels())
     except LogError:

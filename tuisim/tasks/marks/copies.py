@@ -150,14 +150,11 @@ def _compute_prints(tokens: Sequence[Token]) -> _Prints:
     return {key: frozenset(numbers) for key, numbers in lines.items()}
 
 
-def find_similar(
-    programs: Mapping[str, Iterable[str]], handed_out: Collection[str] = ()
-) -> Similar:
+def find_similar(programs: Mapping[str, Iterable[str]]) -> Similar:
     """Return which programs of a class are similar.
 
     Args:
         programs: The texts of the main program and its modules, by the student's name; only `MAX_TOKENS` are compared.
-        handed_out: Texts that the whole class was given, such as a skeleton; passages from them are ignored.
     """
     tokens = {
         name: program_tokens
@@ -187,10 +184,7 @@ def find_similar(
         if len(names) > 1
     )
     prints = {names[0]: _compute_prints(tokens[names[0]]) for names in alike}
-    common = {
-        key for text in handed_out for key in _compute_prints(_read_tokens([text]))
-    } | _find_common(prints)
-    return Similar(groups, _find_pairs(prints, common), len(tokens))
+    return Similar(groups, _find_pairs(prints, _find_common(prints)), len(tokens))
 
 
 def _group_equal(contents: Mapping[str, tuple[str, ...]]) -> list[tuple[str, ...]]:

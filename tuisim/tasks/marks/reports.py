@@ -24,7 +24,7 @@ from tuisim.pictures.html.render import Table
 from tuisim.tasks.goals.judgement import format_points
 from tuisim.tasks.goals.spec import Goal
 from tuisim.tasks.goals.trial_world import TrialWorld
-from tuisim.tasks.marks.class_map import Miss, MissesOfRun, build_class_maps
+from tuisim.tasks.marks.class_map import Miss, build_class_maps
 from tuisim.tasks.marks.copies import find_similar
 from tuisim.tasks.marks.feedback import build_file_stems
 from tuisim.tasks.marks.outcome import GoalOutcome, Outcome, make_portable
@@ -48,7 +48,8 @@ class Report:
     seed: int
     path: str
     """Relative to the page."""
-    misses: MissesOfRun
+    run: StoredRun
+    misses: tuple[Miss, ...]
     """Where the run missed goals; none if another run with the same record has listed them."""
     fault: str = ""
     """Why the report could not be made; empty if it was."""
@@ -109,9 +110,7 @@ def write_reports(
             except Exception as error:  # Any error concerns this report only.
                 path = ""
                 fault = describe_fault(error)
-            yield Report(
-                row.name, outcome.world, outcome.seed, path, MissesOfRun(run, misses), fault
-            )
+            yield Report(row.name, outcome.world, outcome.seed, path, run, misses, fault)
 
 
 def _build_report(
@@ -259,7 +258,7 @@ def write_class_page(
             faults.append(f"{report.student}: {report.fault}")
             continue
         links[report.student, report.world, report.seed] = report.path
-        misses.append(report.misses)
+        misses.append((report.run, report.misses))
         tell(f"report {len(links)} of {run_count}", len(links), run_count)
     alike = find_similar({student.name: read_modules(student) for student in students})
     write_whole(target, build_page(sheet, links, ignored, alike, build_class_maps(misses)).encode())

@@ -7,9 +7,10 @@ from collections.abc import Iterator, Sequence
 from contextlib import closing, suppress
 from dataclasses import replace
 from enum import StrEnum
+from itertools import chain
 from pathlib import Path
+from re import _compiler, _parser  # type: ignore[attr-defined]
 from re import _constants as op  # type: ignore[attr-defined]
-from re import _parser  # type: ignore[attr-defined]
 from typing import Any
 
 from tuisim.base.data_class import dataclass
@@ -45,7 +46,9 @@ ASK = ""
 """A line that means a question, which the program must ask."""
 _MAX_REPEATED = 200
 _LETTERS = "a1 .:-AZ_"
-"""Characters that stand for a class of them, the first that fits."""
+"""Characters that are tried first for a class of them."""
+_FIRST_LETTER, _LAST_LETTER = 32, 0xD7FF
+"""Codes of the other characters that are tried, from the blank on."""
 
 
 def answer_lines(goals: Sequence[Goal]) -> list[str]:
@@ -124,12 +127,8 @@ def _build_part(kind: object, value: Any, groups: dict[int, str]) -> str:
     match kind:
         case op.LITERAL:
             return chr(value)
-        case op.ANY:
-            return "a"
-        case op.NOT_LITERAL:
-            return next(letter for letter in _LETTERS if ord(letter) != value)
-        case op.IN:
-            return _pick_character(value)
+        case op.ANY | op.NOT_LITERAL | op.IN:
+            return _pick_character(kind, value)
         case op.BRANCH:
             return _build_text(value[1][0], groups)
         case op.SUBPATTERN:
@@ -146,43 +145,11 @@ def _build_part(kind: object, value: Any, groups: dict[int, str]) -> str:
     return ""
 
 
-def _pick_character(members: Any) -> str:
-    """Return a character that a class of a regular expression, such as `[a-z]`, matches.
-
-    Args:
-        members: The parsed class.
-    """
-    inside = [(kind, value) for kind, value in members if kind is not op.NEGATE]
-    is_negated = len(inside) < len(members)
-    candidates = [
-        chr(value if kind is op.LITERAL else value[0])
-        for kind, value in inside
-        if kind in (op.LITERAL, op.RANGE)
-    ]
-    character: str
-    for character in (*candidates, *_LETTERS):
-        if any(_is_member(ord(character), kind, value) for kind, value in inside) is not is_negated:
-            return character
-    return _LETTERS[0]
-
-
-def _is_member(code: int, kind: object, value: Any) -> bool:
-    match kind:
-        case op.LITERAL:
-            return bool(code == value)
-        case op.RANGE:
-            return bool(value[0] <= code <= value[1])
-        case op.CATEGORY:
-            letter = {
-                op.CATEGORY_DIGIT: r"\d",
-                op.CATEGORY_NOT_DIGIT: r"\D",
-                op.CATEGORY_SPACE: r"\s",
-                op.CATEGORY_NOT_SPACE: r"\S",
-                op.CATEGORY_WORD: r"\w",
-                op.CATEGORY_NOT_WORD: r"\W",
-            }
-            return re.match(letter[value], chr(code)) is not None
-    return False
+def _pick_character(kind: object, value: Any) -> str:
+    """Return a character that a class of a parsed regular expression, such as `[a-z]`, matches; empty for none."""
+    part = _parser.SubPattern(_parser.State(), [(kind, value)])
+    letters = chain(_LETTERS, map(chr, range(_FIRST_LETTER, _LAST_LETTER)))
+    return next(filter(_compiler.compile(part).match, letters), "")
 
 
 STILL_S = 30.0
