@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import MISSING, Field, dataclass, field
+from functools import partial
 from typing import Any, ClassVar, NoReturn, Self, TypeVar, dataclass_transform
 
 from tuisim.base.errors import ConfigError, RobotError
@@ -29,80 +30,40 @@ from tuisim.engine.core.values import (
 )
 
 
-def _field(value: Value, default: Any, *, optional: bool = False) -> Any:
+def _build_field(
+    kind: Callable[..., Value],
+    *allowed: Any,
+    default: Any = MISSING,
+    optional: bool = False,
+    **about: Any,
+) -> Any:
+    """Return a data class field for a value.
+
+    Args:
+        kind: Its class, of `engine.core.values`.
+        allowed, about: The arguments of that class.
+        default: The value if none is given; without it, the value is required.
+        optional: Whether the value may be None; it always may if that is the default.
+    """
+    value = kind(*allowed, **about)
     value.optional = optional or default is None
     return field(default=default, metadata={METADATA: value})
 
 
-def flag(*, default: Any = MISSING, **about: Any) -> Any:
-    """Return a data class field for true or false; `about` are arguments of `values.Flag`."""
-    return _field(Flag(**about), default)
-
-
-def number(low: float, high: float, *, default: Any = MISSING, **about: Any) -> Any:
-    """Return a data class field for a number from `low` to `high`; `about` are arguments of `values.Number`."""
-    return _field(Number(low, high, **about), default)
-
-
-def whole(low: int, high: int, *, default: Any = MISSING, **about: Any) -> Any:
-    """Return a data class field for a whole number from `low` to `high`; `about` are arguments of `values.Whole`."""
-    return _field(Whole(low, high, **about), default)
-
-
-def seed(*, default: Any = MISSING, **about: Any) -> Any:
-    """Return a data class field for a seed; `about` are arguments of `values.Seed`."""
-    return _field(Seed(0, MAX_SEED, **about), default)
-
-
-def named_number(
-    low: float, high: float, names: Mapping[str, float], *, default: Any = MISSING, **about: Any
-) -> Any:
-    """Return a data class field for a number or its name in `names`; `about` are arguments of `values.NamedNumber`."""
-    return _field(NamedNumber(low, high, names, **about), default)
-
-
-def numbers(low: float, high: float, most: int, *, default: Any = MISSING, **about: Any) -> Any:
-    """Return a data class field for up to `most` numbers; `about` are arguments of `values.Numbers`."""
-    return _field(Numbers(low, high, most, **about), default)
-
-
-def text(*, default: Any = MISSING, **about: Any) -> Any:
-    """Return a data class field for one line of text; `about` are arguments of `values.Text`."""
-    return _field(Text(**about), default)
-
-
-def choice(choices: Iterable[Any], *, default: Any = MISSING, **about: Any) -> Any:
-    """Return a data class field for one of `choices`; `about` are arguments of `values.Choice`."""
-    return _field(Choice(choices, **about), default)
-
-
-def some(choices: Iterable[str], *, default: Any = MISSING, **about: Any) -> Any:
-    """Return a data class field for any number of texts out of `choices`; `about` are arguments of `values.Choices`."""
-    return _field(Choices(choices, **about), default)
-
-
-def color(*, default: Any = MISSING, **about: Any) -> Any:
-    """Return a data class field for a colour; `about` are arguments of `values.Color`."""
-    return _field(Color(**about), default)
-
-
-def part(of: type, *, default: Any = MISSING, optional: bool = False, **about: Any) -> Any:
-    """Return a data class field for another spec of class `of`, or also for None if `optional` is True.
-
-    `about` are arguments of `values.Part`.
-    """
-    value = Part(of, **about)
-    return _field(value, default, optional=optional)
-
-
-def named_part(of: type, *, default: Any = MISSING, **about: Any) -> Any:
-    """Return a data class field for a spec that may be given by name; `about` are arguments of `values.NamedPart`."""
-    return _field(NamedPart(of, **about), default)
-
-
-def parts(of: type, *, default: Any = MISSING, **about: Any) -> Any:
-    """Return a data class field for several other specs of class `of`; `about` are arguments of `values.Parts`."""
-    return _field(Parts(of, **about), default)
+flag = partial(_build_field, Flag)
+number = partial(_build_field, Number)
+whole = partial(_build_field, Whole)
+seed = partial(_build_field, Seed, 0, MAX_SEED)
+named_number = partial(_build_field, NamedNumber)
+numbers = partial(_build_field, Numbers)
+text = partial(_build_field, Text)
+choice = partial(_build_field, Choice)
+some = partial(_build_field, Choices)
+color = partial(_build_field, Color)
+part = partial(_build_field, Part)
+named_part = partial(_build_field, NamedPart)
+parts = partial(_build_field, Parts)
+"""Each builds a field for a value of its class: it takes the arguments of the class, `default` and `optional`."""
 
 
 _Spec = TypeVar("_Spec", bound="Spec")
