@@ -154,22 +154,13 @@ class Flag(Value):
 
     __slots__ = ("off_flag", "off_help")
     stored_as = bool
+    allowed = "true or false"
+    metavar = ""
+    choices = (ON, OFF)
 
     def __init__(self, *, off_flag: str = "", off_help: str = "", **about: Any) -> None:
         super().__init__(**about)
         self.off_flag, self.off_help = off_flag, off_help
-
-    @property
-    def allowed(self) -> str:
-        return "true or false"
-
-    @property
-    def metavar(self) -> str:
-        return ""
-
-    @property
-    def choices(self) -> tuple[str, ...]:
-        return Flag.ON, Flag.OFF
 
     def parse_data(self, data: object) -> bool:
         if not isinstance(data, bool):
@@ -190,6 +181,8 @@ class Number(Value):
 
     __slots__ = ("high", "low")
     stored_as: ClassVar[Any] = int | float
+    KIND: ClassVar[Any] = float
+    """The type of the value in a spec."""
 
     def __init__(self, low: float, high: float, **about: Any) -> None:
         super().__init__(**about)
@@ -200,27 +193,20 @@ class Number(Value):
         return f"a number from {self.low:g} to {self.high:g}"
 
     def check(self, value: Any) -> None:
-        self._check(value, int | float)
-
-    def _check(self, value: Any, kind: Any) -> None:
         if (
             isinstance(value, bool)
-            or not isinstance(value, kind)
+            or not isinstance(value, self.stored_as)
             or not self.low <= value <= self.high
         ):
             raise self.build_error(value)
 
-    def parse_data(self, data: object) -> float:
+    def parse_data(self, data: object) -> Any:
         self.check(data)
-        return float(data)  # type: ignore[arg-type]  # checked
+        return self.KIND(data)
 
-    def parse_text(self, text: str) -> float:
-        number: float = self._parse_number(text, float)
-        return number
-
-    def _parse_number(self, text: str, kind: type) -> Any:
+    def parse_text(self, text: str) -> Any:
         try:
-            return self.parse_data(kind(text))
+            return self.parse_data(self.KIND(text))
         except ValueError:
             raise self.build_error(text) from None
 
@@ -233,21 +219,11 @@ class Whole(Number):
 
     __slots__ = ()
     stored_as = int
+    KIND = int
 
     @property
     def allowed(self) -> str:
         return f"a whole number from {self.low} to {self.high}"
-
-    def check(self, value: Any) -> None:
-        self._check(value, int)
-
-    def parse_data(self, data: object) -> int:
-        self.check(data)
-        return data  # type: ignore[return-value]  # checked
-
-    def parse_text(self, text: str) -> int:
-        number: int = self._parse_number(text, int)
-        return number
 
     def format_text(self, value: Any) -> str:
         return str(value)
@@ -262,9 +238,9 @@ class Seed(Whole):
         if isinstance(value, bool) or not isinstance(value, int):
             raise self.build_error(value)
 
-    def parse_data(self, data: object) -> int:
-        self._check(data, int)
-        return super().parse_data(data)
+    def parse_data(self, data: object) -> Any:
+        super().check(data)
+        return data
 
 
 class NamedNumber(Number):
@@ -284,12 +260,12 @@ class NamedNumber(Number):
     def allowed(self) -> str:
         return f"{', '.join(self.names)}, or {super().allowed}"
 
-    def parse_data(self, data: object) -> float:
+    def parse_data(self, data: object) -> Any:
         if isinstance(data, str) and data in self.names:
             return self.names[data]
         return super().parse_data(data)
 
-    def parse_text(self, text: str) -> float:
+    def parse_text(self, text: str) -> Any:
         name = text.lower()
         return self.names[name] if name in self.names else super().parse_text(text)
 
@@ -352,6 +328,7 @@ class Text(Value):
     """
 
     __slots__ = ("most", "pattern", "what")
+    allowed = "text"
 
     def __init__(
         self,
@@ -364,10 +341,6 @@ class Text(Value):
         self.what = what
         self.most = most
         self.pattern = pattern
-
-    @property
-    def allowed(self) -> str:
-        return "text"
 
     @property
     def metavar(self) -> str:
@@ -441,14 +414,8 @@ class Choices(Choice):
 
     __slots__ = ()
     stored_as = (list, tuple)
-
-    @property
-    def allowed(self) -> str:
-        return "a list"
-
-    @property
-    def choices(self) -> tuple[Any, ...]:
-        return ()
+    allowed = "a list"
+    choices = ()
 
     def check(self, value: Any) -> None:
         if not isinstance(value, list | tuple):
@@ -467,14 +434,8 @@ class Color(Value):
     """A value that is a colour, given by its CSS name or as `#rrggbb`."""
 
     __slots__ = ()
-
-    @property
-    def allowed(self) -> str:
-        return "a CSS colour name, or #rrggbb"
-
-    @property
-    def metavar(self) -> str:
-        return "COLOUR"
+    allowed = "a CSS colour name, or #rrggbb"
+    metavar = "COLOUR"
 
     def check(self, value: Any) -> None:
         if not isinstance(value, str):
@@ -541,14 +502,11 @@ class NamedPart(Part):
     """
 
     __slots__ = ()
+    metavar = "SIZES"
 
     @property
     def allowed(self) -> str:
-        return f"{' or '.join(self._sizes)}, then values such as {self._example}"
-
-    @property
-    def _example(self) -> str:
-        return next(f"{name}=1" for name in self.values)
+        return f"{' or '.join(self._sizes)}, then values such as {next(iter(self.values))}=1"
 
     @property
     def _sizes(self) -> dict[str, dict[str, float]]:
@@ -559,10 +517,6 @@ class NamedPart(Part):
         return {"none": {}} | {
             word: {name: number.names[word] for name, number in numbers.items()} for word in words
         }
-
-    @property
-    def metavar(self) -> str:
-        return "SIZES"
 
     @property
     def choices(self) -> tuple[Any, ...]:
