@@ -15,7 +15,6 @@ from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.motion import Motion, create_motor
 from tuisim.engine.core.motor_columns import MotorSink
 from tuisim.engine.core.profile import NS_PER_S
-from tuisim.engine.core.servo.bases import DriveBases
 from tuisim.engine.core.servo.motor import ServoMotor
 from tuisim.engine.core.spec import NO_PORT
 from tuisim.engine.core.state import Instant, Present
@@ -30,6 +29,7 @@ from tuisim.engine.core.tick_record import (
 if TYPE_CHECKING:
     from tuisim.engine.core.commands.calls import Call
     from tuisim.engine.core.motors import Motor
+    from tuisim.engine.core.servo.drive_base import DriveBase
     from tuisim.engine.core.spec import MotorSpec, RobotSpec, RunSpec
 
 
@@ -69,8 +69,8 @@ class Simulation(Motion):
         self._reported_tick = 0
         self.scales: dict[Motor, float] = {}
         """How many degrees the program counts for one of a motor; 1 where it is missing."""
-        self.bases = DriveBases()
-        """The drive bases that the program has made."""
+        self.bases: dict[int, DriveBase] = {}
+        """The newest drive bases that the program has made, by number; the last one made comes last."""
         self.on_command: CommandHook = lambda *_: None
         """Called with each command before it takes effect."""
 

@@ -8,7 +8,7 @@ from typing import Any, cast
 
 from tuisim.engine.core.driver.plant import Axle, PlantSpec
 from tuisim.engine.core.profile import PROFILES, MotorLaw
-from tuisim.engine.core.servo.bases import DriveBases
+from tuisim.engine.core.servo.drive_base import DriveBase
 from tuisim.engine.core.servo.hub_motors import PLANTS
 from tuisim.engine.core.servo.motor import ServoMotor
 from tuisim.engine.core.servo.settings import BATTERY_V, MODELS
@@ -39,7 +39,8 @@ class MotorsOnly:
         self.spec = SimpleNamespace(profile=PROFILES["lego-micropython"], robot=usual)
         self._robot = robot
         self.zero_deg = 0.0
-        self.motors, self.bases = motors, DriveBases()
+        self.motors = motors
+        self.bases: dict[int, DriveBase] = {}
         self.scales: dict[ServoMotor, float] = {}
         self.find_number = motors.index
         self.on_command: CommandHook = lambda *_: None

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from tuisim.engine.core.servo.drive_base import DriveBase
     from tuisim.engine.core.simulation import Simulation
 
+MAX_BASES = 256
+"""Only so many newest drive bases have numbers: a program may make one in each turn of a loop."""
 SETTINGS: tuple[str, ...] = tuple(ControlSettings.__dataclass_fields__)
 """The settings of a controller, in the order of their numbers, which count from 0."""
 
@@ -138,7 +140,7 @@ def set_control(motor: ServoMotor, _time_ns: int, values: Values) -> None:
 
 
 def build_base(sim: Simulation, _time_ns: int, values: Values) -> None:
-    """Create a drive base from two motors.
+    """Create a drive base from two motors; once there are `MAX_BASES`, it gets the number of the oldest one.
 
     Args:
         sim: The simulation.
@@ -150,7 +152,10 @@ def build_base(sim: Simulation, _time_ns: int, values: Values) -> None:
     left, right = (sim.motors[find_index(values, place, len(sim.motors))] for place in (0, 1))
     assert isinstance(left, ServoMotor) and isinstance(right, ServoMotor)
     _, _, diameter_mm, track_mm = values
-    sim.bases.add(DriveBase(left, right, diameter_mm, track_mm, lambda: sim.gyro_deg))
+    bases = sim.bases
+    number = len(bases) if len(bases) < MAX_BASES else next(iter(bases))
+    bases.pop(number, None)
+    bases[number] = DriveBase(left, right, diameter_mm, track_mm, lambda: sim.gyro_deg)
 
 
 def move_base(base: DriveBase, time_ns: int, values: Values) -> None:

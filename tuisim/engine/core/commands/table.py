@@ -19,7 +19,7 @@ from tuisim.engine.core.servo.control import Ending
 from tuisim.engine.core.servo.settings import FULL_ACTUATION
 
 if TYPE_CHECKING:
-    from tuisim.engine.core.servo.bases import DriveBases
+    from tuisim.engine.core.servo.drive_base import DriveBase
     from tuisim.engine.core.simulation import Simulation
 
 DrivenMotor = BrickMotor | BrowserMotor
@@ -233,7 +233,7 @@ CALLS: Mapping[Call, CallSpec] = {
 }
 
 
-def list_parts(sim: Simulation, target: Target) -> Sequence[Any] | DriveBases:
+def list_parts(sim: Simulation, target: Target) -> Sequence[Any] | Mapping[int, DriveBase]:
     """Return what commands for `target` act on: the motors, the drive bases, or only the simulation.
 
     The number of a part in a command is its index in the result.

@@ -52,7 +52,7 @@ class DriveBase(Connected):
         sim = self.brick.session.sim
         numbers = sim.find_number(left), sim.find_number(right)
         self.brick.tell(0, Call.BUILD_BASE, *numbers, float(wheel_diameter), float(axle_track))
-        self._number = sim.bases.newest
+        self._number = next(reversed(sim.bases))
         self._base = base = sim.bases[self._number]
         self.distance_control = self.CONTROL(self, base.distance)
         self.heading_control = self.CONTROL(self, base.heading)
