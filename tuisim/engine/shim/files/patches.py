@@ -15,11 +15,10 @@ import os
 import stat
 import zlib
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from typing import Any
 
 from tuisim.base.errors import NotSimulated
-from tuisim.engine.shim.files.entries import FOLDER_MODE, DeviceFile, Folder, OpenFile
+from tuisim.engine.shim.files.entries import FOLDER_MODE, DeviceFile, Folder
 from tuisim.engine.shim.files.open_files import DeviceIO, OpenFiles, file_object, read, seek, write
 from tuisim.engine.shim.files.tree import MAYBE_OURS, DeviceTree
 
@@ -38,7 +37,9 @@ _FLAGS["x"] = _FLAGS["w"] | os.O_EXCL
 
 _FALLS_BACK = ("sendfile", "copy_file_range")
 """Calls whose users, such as `shutil`, read and write instead when the kernel refuses."""
-_REFUSED = ("dup2", "readv", "writev", "preadv", "pwritev", "splice")
+_REFUSED = (
+    *("dup2", "ftruncate", "pread", "pwrite", "readv", "writev", "preadv", "pwritev", "splice"),
+)
 """Further calls that take descriptors, and which hardly any program for a brick uses."""
 
 
@@ -134,7 +135,6 @@ class FilePatches:
         """Replace the functions of Python that open, read and list files."""
         self._patch_open()
         self._patch_descriptors()
-        self._patch_positions()
         self._refuse_others()
         self._patch_paths()
         self._patch_folders()
@@ -235,65 +235,27 @@ class FilePatches:
     def _patch_descriptors(self) -> None:
         files = self._files
         by_fd = self._files.by_fd
-        replace = self._replace
-        real_close, real_read, real_write, real_fstat = os.close, os.read, os.write, os.fstat
+        real_close = os.close
 
         def close(fd: int) -> None:
             if by_fd:
                 files.forget(fd)
             real_close(fd)
 
-        def os_read(fd: int, length: int, /) -> bytes:
-            return real_read(fd, length) if fd not in by_fd else read(by_fd[fd], length)
+        def on_descriptor(real: Callable[..., Any], ours: Callable[..., Any]) -> Callable[..., Any]:
+            """Return a function of a descriptor: `ours` for that of a device file, else `real`."""
 
-        def os_write(fd: int, data: Any, /) -> int:
-            return real_write(fd, data) if fd not in by_fd else write(by_fd[fd], data)
+            def call(fd: int, *given: Any) -> Any:
+                return real(fd, *given) if fd not in by_fd else ours(by_fd[fd], *given)
 
-        def fstat(fd: int) -> os.stat_result:
-            return real_fstat(fd) if fd not in by_fd else _status(by_fd[fd].file)
+            return call
 
-        replace(os, "close", close)
-        replace(os, "read", os_read)
-        replace(os, "write", os_write)
-        replace(os, "fstat", fstat)
-
-    def _patch_positions(self) -> None:
-        by_fd = self._files.by_fd
-        replace = self._replace
-        real_lseek, real_pread, real_pwrite, real_ftruncate = (
-            os.lseek,
-            os.pread,
-            os.pwrite,
-            os.ftruncate,
-        )
-
-        def lseek(fd: int, position: int, whence: int, /) -> int:
-            return (
-                real_lseek(fd, position, whence)
-                if fd not in by_fd
-                else seek(by_fd[fd], position, whence)
-            )
-
-        def pread(fd: int, length: int, offset: int, /) -> bytes:
-            if fd not in by_fd:
-                return real_pread(fd, length, offset)
-            with _moved_to(by_fd[fd], offset) as opened:
-                return read(opened, length)
-
-        def pwrite(fd: int, data: Any, offset: int, /) -> int:
-            if fd not in by_fd:
-                return real_pwrite(fd, data, offset)
-            with _moved_to(by_fd[fd], offset) as opened:
-                return write(opened, data)
-
-        def ftruncate(fd: int, length: int) -> None:
-            if fd not in by_fd:
-                real_ftruncate(fd, length)
-
-        replace(os, "lseek", lseek)
-        replace(os, "pread", pread)
-        replace(os, "pwrite", pwrite)
-        replace(os, "ftruncate", ftruncate)
+        self._replace(os, "close", close)
+        self._replace(os, "read", on_descriptor(os.read, read))
+        self._replace(os, "write", on_descriptor(os.write, write))
+        self._replace(os, "lseek", on_descriptor(os.lseek, seek))
+        status = on_descriptor(os.fstat, lambda opened: _status(opened.file))
+        self._replace(os, "fstat", status)
 
     def _refuse_others(self) -> None:
         """Patch the remaining functions of `os`, so that they refuse the descriptor of a device file."""
@@ -306,7 +268,7 @@ class FilePatches:
                 ):
                     if name in _FALLS_BACK:
                         raise OSError(errno.EINVAL, os.strerror(errno.EINVAL))
-                    hint = "use os.read, os.write and os.dup"
+                    hint = "use os.read, os.write, os.lseek and os.dup"
                     raise NotSimulated(
                         f"os.{name} on a device file is not part of the simulated brick", hint
                     )
@@ -330,12 +292,9 @@ class FilePatches:
                 if path.__class__ is str and not path.startswith(MAYBE_OURS):
                     return real(path, *given, **named)
                 if isinstance(path, int):
-                    return (
-                        real(path, *given, **named)
-                        if path not in by_fd
-                        else _status(by_fd[path].file)
-                    )
-                entry = tree.find(path)
+                    entry: Any = by_fd[path].file if path in by_fd else None
+                else:
+                    entry = tree.find(path)
                 return real(path, *given, **named) if entry is None else _status(entry)
 
             return look
@@ -415,17 +374,6 @@ class FilePatches:
     def _mapping(self, fileno: Any, length: int, *_given: Any, **_named: Any) -> Any:
         opened = self._files.opened(fileno)
         return None if opened is None else opened.file.mapping(length)
-
-
-@contextmanager
-def _moved_to(opened: OpenFile, offset: int) -> Iterator[OpenFile]:
-    """Return a context in which the position of a file is `offset`; at its end, the old position is restored."""
-    before = opened.at
-    opened.at = offset
-    try:
-        yield opened
-    finally:
-        opened.at = before
 
 
 def _or_refuse(tree: DeviceTree, path: Any, flags: int) -> Folder | DeviceFile | None:

@@ -73,58 +73,34 @@ class Process:
 
     system: System
 
-    def __init__(
-        self,
-        args: Any,
-        bufsize: int = -1,
-        executable: Any = None,
-        stdin: Any = None,
-        stdout: Any = None,
-        stderr: Any = None,
-        preexec_fn: Any = None,
-        close_fds: bool = True,
-        shell: bool = False,
-        cwd: Any = None,
-        env: Any = None,
-        universal_newlines: bool | None = None,
-        startupinfo: Any = None,
-        creationflags: int = 0,
-        restore_signals: bool = True,
-        start_new_session: bool = False,
-        pass_fds: Any = (),
-        *,
-        user: Any = None,
-        group: Any = None,
-        extra_groups: Any = None,
-        encoding: str | None = None,
-        errors: str | None = None,
-        text: bool | None = None,
-        umask: int = -1,
-        pipesize: int = -1,
-        process_group: Any = None,
-    ) -> None:
+    def __init__(self, args: Any, *given: Any, **named: Any) -> None:
         system = self.system
         system.session.command()
+        options = system.options.bind_partial(args, *given, **named).arguments.get
         self.args, self.pid = args, next(system.pids)
         self.returncode: int | None = None
-        self.text_mode = self.universal_newlines = bool(
-            encoding or errors or text or universal_newlines
+        self.encoding: str | None = options("encoding")
+        self.errors: str | None = options("errors")
+        self.text_mode = self.universal_newlines = any(
+            map(options, ("encoding", "errors", "text", "universal_newlines"))
         )
-        self.encoding = encoding
-        self.errors = errors
+        stdin = options("stdin")
+        stderr = options("stderr")
         if stdin == system.module.PIPE:
             raise refuse("the standard input of a process", "give it arguments")
         self.stdin = None
+        cwd = options("cwd")
         folder = "" if cwd is None else os.path.abspath(os.fsdecode(cwd))
         self.streams = Streams(folder=folder, speech=_take_speech(stdin))
-        self.streams.output, self.stdout = self._open_output(stdout, own_output)
+        self.streams.output, self.stdout = self._open_output(options("stdout"), own_output)
         if stderr == system.module.STDOUT:
             self.streams.errors = self.streams.output
             self.stderr = None
         else:
             self.streams.errors, self.stderr = self._open_output(stderr, own_errors)
-        steps = system.shell.start(_calls(args, shell), self.streams)
-        self.running = Running(system.session, steps, several=shell)
+        in_shell = bool(options("shell"))
+        steps = system.shell.start(_calls(args, in_shell), self.streams)
+        self.running = Running(system.session, steps, several=in_shell)
         system.processes[self.pid] = self
 
     def _open_output(self, target: Any, own: Sink) -> tuple[Sink, IO[Any] | None]:
@@ -218,6 +194,8 @@ class System:
         self.shell = shell
         self.module: Any = None
         """The module `subprocess`, once it is imported."""
+        self.options: Any = None
+        """The signature of the genuine `Popen`."""
         self.processes: dict[int, Process] = {}
         self.pids = count(NO_PID + 1)
 
@@ -257,7 +235,11 @@ class System:
 
     def finish_subprocess(self, module: types.ModuleType) -> None:
         """Patch `Popen` of `subprocess` after its import; everything else in the module uses it."""
+        # Imported on demand: few programs start processes.
+        from inspect import signature
+
         self.module = module
+        self.options = signature(vars(module)["Popen"])
         vars(module)["Popen"] = type(
             "Popen", (Process,), {"system": self, "__module__": "subprocess"}
         )
