@@ -12,8 +12,9 @@ import pytest
 from tests.cases import cases
 from tests.conftest import Command
 from tuisim.engine.core.profile import PROFILES
-from tuisim.engine.core.sensors.color import clear_reading
+from tuisim.engine.core.sensors.color import measure_color
 from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
+from tuisim.engine.core.state import Instant
 from tuisim.engine.mats import background
 from tuisim.engine.runs.run_folder import field_files
 from tuisim.tasks.reasons.hand_presses import HandPress
@@ -433,4 +434,4 @@ def test_the_coloured_mat_has_each_colour_there(color: str, x_mm: int) -> None:
     field = field_files(spec).open_field()
     pose = replace(background(COLORED_MAT).start, x_mm=float(x_mm))
     for sensor in spec.robot.color_sensors:
-        assert clear_reading(sensor, pose, field).name.lower() == color
+        assert measure_color(sensor, Instant(0, pose), field).name.lower() == color

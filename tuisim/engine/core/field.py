@@ -31,6 +31,7 @@ def build_disc_mask(diameter: int) -> list[list[bool]]:
     ]
 
 
+@lru_cache(maxsize=16)
 def count_disc_pixels(diameter: int) -> int:
     """Return the number of pixels in a disc of a diameter in pixels: 305 for 20, 69 for 10, 697 for 30."""
     return sum(map(sum, build_disc_mask(diameter)))

@@ -13,7 +13,7 @@ from typing import Any
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.hub_spec import HUB_MOTORS, HUB_PORTS
-from tuisim.engine.core.sensor_places import ORDERS, SENSOR_MAKERS, measure_body
+from tuisim.engine.core.sensor_places import ORDERS, measure_body, place_sensor
 from tuisim.engine.core.spec import (
     INPUT_PORTS,
     MOUNTS,
@@ -166,7 +166,7 @@ def _add_sensor(robot: RobotSpec, port: str, kind: type[SensorSpec]) -> RobotSpe
     alike = [sensor for sensor in others if isinstance(sensor, kind)]
     body = measure_body(robot)
     sides = ORDERS[kind] if alike or kind is not TouchSpec else ("front",)
-    choices = [SENSOR_MAKERS[kind](port, side, names, body) for side in sides]
+    choices = [place_sensor(kind, port, side, names, body) for side in sides]
     places = {_find_place(sensor) for sensor in alike}
     new = next((choice for choice in choices if _find_place(choice) not in places), choices[-1])
     return _put_sensors(robot, [*others, new])

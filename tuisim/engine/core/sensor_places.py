@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
-from typing import Any
+from collections.abc import Collection, Mapping
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.spec import (
@@ -59,46 +58,44 @@ def measure_body(robot: RobotSpec) -> Body:
     return Body((robot.wheel_spacing_mm + robot.wheel_width_mm) / 2, robot.back_mm)
 
 
-def _name(base: str, side: str, names: Collection[str]) -> str:
+def _choose_name(base: str, side: str, names: Collection[str]) -> str:
     """Return a name for a new sensor that is not in `names`: `base`, or else `base` with the side, or with a number."""
     choices = [base, f"{base}_{side}", *(f"{base}{number}" for number in range(2, 6))]
     return next(name for name in choices if name not in names)
 
 
-def _place_color(port: str, side: str, names: Collection[str], _body: Body) -> SensorSpec:
-    x_mm, y_mm = DOWN[side]
-    name = str(side) if side not in names else _name("color", side, names)
-    return ColorSensorSpec(name, port, x_mm, y_mm)
+def place_sensor(
+    kind: type[SensorSpec], port: str, side: str, names: Collection[str], body: Body
+) -> SensorSpec:
+    """Return a sensor on a side of a robot.
+
+    Args:
+        kind: Its class.
+        port: Its port.
+        side: The side.
+        names: The names of the other sensors.
+        body: The robot's body.
+    """
+    if kind is ColorSensorSpec and side not in names:
+        return ColorSensorSpec(str(side), port, *DOWN[side])
+    name = _choose_name(_NAMES[kind], side, names)
+    if kind is GyroSpec:
+        return GyroSpec(name, port)
+    if kind is TouchSpec:
+        # The bumper is as wide as the robot, or half as wide on one side: with a narrow bumper, a corner of the robot
+        # would meet a wall first.
+        half_mm = body.half_width_mm
+        x_mm = {"left": -half_mm / 2, "right": half_mm / 2}.get(side, 0.0)
+        y_mm = body.back_mm - 15.0 if side == "back" else BUMPER_MM
+        return TouchSpec(name, port, x_mm, y_mm, half_mm if x_mm else 2 * half_mm)
+    return kind(name, port, *(DOWN if kind is ColorSensorSpec else LOOKS)[side])
 
 
-def _place_ultrasonic(port: str, side: str, names: Collection[str], _body: Body) -> SensorSpec:
-    return UltrasonicSpec(_name("ultrasonic", side, names), port, *LOOKS[side])
-
-
-def _place_infrared(port: str, side: str, names: Collection[str], _body: Body) -> SensorSpec:
-    return InfraredSpec(_name("infrared", side, names), port, *LOOKS[side])
-
-
-def _touch(port: str, side: str, names: Collection[str], body: Body) -> SensorSpec:
-    # The bumper is as wide as the robot, or half as wide on one side: with a narrow bumper, a corner of the robot
-    # would meet a wall first.
-    half_mm = body.half_width_mm
-    x_mm = {"left": -half_mm / 2, "right": half_mm / 2}.get(side, 0.0)
-    y_mm = body.back_mm - 15.0 if side == "back" else BUMPER_MM
-    return TouchSpec(
-        _name("touch", side, names), port, x_mm, y_mm, half_mm if x_mm else 2 * half_mm
-    )
-
-
-def _place_gyro(port: str, _side: str, names: Collection[str], _body: Body) -> SensorSpec:
-    return GyroSpec(_name("gyro", "", names), port)
-
-
-SENSOR_MAKERS: Mapping[type[SensorSpec], Callable[[str, str, Collection[str], Body], Any]] = {
-    ColorSensorSpec: _place_color,
-    UltrasonicSpec: _place_ultrasonic,
-    GyroSpec: _place_gyro,
-    TouchSpec: _touch,
-    InfraredSpec: _place_infrared,
+_NAMES: Mapping[type[SensorSpec], str] = {
+    ColorSensorSpec: "color",
+    UltrasonicSpec: "ultrasonic",
+    GyroSpec: "gyro",
+    TouchSpec: "touch",
+    InfraredSpec: "infrared",
 }
-"""Make a sensor of a class: they take its port, its side, the names of the other sensors, and the robot's body."""
+"""Usual names of sensors, by their class."""

@@ -13,14 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tuisim.engine.core.drift import draw_echo_bias_mm, find_drift, sense_turn_rate_dps
-from tuisim.engine.core.field import Field, build_disc_mask
+from tuisim.engine.core.field import Field, build_disc_mask, count_disc_pixels
 from tuisim.engine.core.noise import generate_bytes
 from tuisim.engine.core.sensors import SENSORS
 from tuisim.engine.core.sensors.color import (
     EVEN,
     WHITE,
     compute_light,
-    disc_pixels_of,
     find_response,
 )
 from tuisim.engine.core.sensors.ultrasonic import MAX_ECHO_DEG, MIN_ECHO_DEG, Edge, find_surfaces
@@ -82,7 +81,7 @@ def measure_quiet_color(
         col = (x_mm - diameter / 2).astype(np.int64) + diameter
         row = (FIELD_HEIGHT_MM - y_mm - diameter / 2).astype(np.int64) + diameter
     sums, inside = _sum_discs(col, row, diameter, field)
-    means = sums / disc_pixels_of(diameter)
+    means = sums / count_disc_pixels(diameter)
     response = find_response(sensor, run.profile)
     drift = find_drift(run)
     if response != EVEN:

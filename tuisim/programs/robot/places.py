@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from tuisim.engine.core.sensor_places import LOOKS, ORDERS, SENSOR_MAKERS, Body
+from tuisim.engine.core.sensor_places import LOOKS, ORDERS, Body, place_sensor
 from tuisim.engine.core.spec import (
     ColorSensorSpec,
     GyroSpec,
@@ -104,7 +104,7 @@ def place_sensors(
             kind=kind,
         )
         for port, side in sides.items():
-            sensor = SENSOR_MAKERS[spec](port, side, names, body)
+            sensor = place_sensor(spec, port, side, names, body)
             names.add(sensor.name)
             sensors[port] = sensor
     return sensors

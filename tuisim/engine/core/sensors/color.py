@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from enum import StrEnum
-from functools import lru_cache, partial
+from functools import partial
 from math import ceil, cos, radians, sin
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple, assert_never
@@ -261,16 +261,6 @@ def _has_floor(field: Field, diameter: int, corner: tuple[int, int]) -> bool:
     return is_on_mat or field.floor_rgb is not None
 
 
-def clear_reading(spec: ColorSensorSpec, pose: Pose, field: Field) -> ColorReading:
-    """Return the mean colour of the mat under a colour sensor, 0 … 255, without noise and the sensor's response."""
-    if spec.strategy != "mean":
-        box = field.read_box(spec.diameter_mm, *find_box_corner(pose, spec))
-        return ColorReading(*weighted_mean(box, spec.diameter_mm, spec.strategy))
-    red, green, blue = field.sum_disc(spec.diameter_mm, *find_box_corner(pose, spec))
-    count = disc_pixels_of(spec.diameter_mm)
-    return ColorReading(red / count, green / count, blue / count)
-
-
 def _read_in_full(
     spec: ColorSensorSpec,
     profile: ProfileSpec,
@@ -299,7 +289,7 @@ def build_rgb_reader(
     diameter = spec.diameter_mm
     right_mm = spec.x_mm
     forward_mm = spec.y_mm
-    radius, count, sums = diameter / 2, disc_pixels_of(diameter), field.sums[diameter]
+    radius, count, sums = diameter / 2, count_disc_pixels(diameter), field.sums[diameter]
     width, height = field.width_px + diameter, field.height_px + diameter
 
     def read(x_mm: float, y_mm: float, heading_deg: float) -> tuple[int, int, int]:
@@ -335,7 +325,7 @@ def build_noisy_rgb_reader(
     right_mm = spec.x_mm
     forward_mm = spec.y_mm
     name = spec.name
-    radius, count = diameter / 2, disc_pixels_of(diameter)
+    radius, count = diameter / 2, count_disc_pixels(diameter)
     disc_sums, disc, response = field.sum_disc, field.read_disc, find_response(spec, profile)
 
     def read(
@@ -361,18 +351,19 @@ def build_noisy_rgb_reader(
     return read
 
 
-def _measure_noisy_sums(
-    spec: ColorSensorSpec, instant: Instant, field: Field
-) -> tuple[int, int, int]:
+def _measure_sums(spec: ColorSensorSpec, instant: Instant, field: Field) -> tuple[int, int, int]:
     """Return the sums of red, green and blue in the disc under a sensor, including noise."""
-    diameter, (col, row) = spec.diameter_mm, find_box_corner(instant.pose, spec)
-    normals = draw_reading_noise(instant.seed, instant.tick, spec.name)
+    diameter = spec.diameter_mm
+    col, row = find_box_corner(instant.pose, spec)
+    sums = field.sum_disc(diameter, col, row)
+    if not instant.noise.light:
+        return sums
     return add_noise_to_sums(
         lambda: field.read_disc(diameter, col, row),
-        disc_pixels_of(diameter),
-        field.sum_disc(diameter, col, row),
+        count_disc_pixels(diameter),
+        sums,
         instant.noise.light,
-        normals,
+        draw_reading_noise(instant.seed, instant.tick, spec.name),
     )
 
 
@@ -388,7 +379,7 @@ def _read_noisy_box(spec: ColorSensorSpec, instant: Instant, field: Field) -> by
     seen = bytearray(box)
     inside = [index for index, weight in enumerate(disc_weights(diameter, "mean")) if weight]
     random = generate_bytes(instant.seed, instant.tick, spec.name, 3 * len(inside))
-    for channel, total in enumerate(_measure_noisy_sums(spec, instant, field)):
+    for channel, total in enumerate(_measure_sums(spec, instant, field)):
         clear = bytes(box[3 * index + channel] for index in inside)
         for index, value in zip(
             inside,
@@ -401,15 +392,11 @@ def _read_noisy_box(spec: ColorSensorSpec, instant: Instant, field: Field) -> by
 
 def measure_color(spec: ColorSensorSpec, instant: Instant, field: Field) -> ColorReading:
     """Return the reading of a colour sensor at an instant, with noise, the sensor's response and the brightness."""
-    mean = _mean_of_mat(spec, instant, field)
-    tell = _build_channel_reader(spec, instant, field)
-    return ColorReading(
-        tell(mean.red),
-        tell(mean.green),
-        tell(mean.blue),
-        instant.profile.brick_colors,
-        spec.port in HUB_PORTS,
+    red, green, blue = map(
+        _build_channel_reader(spec, instant, field), _measure_mean(spec, instant, field)
     )
+    is_hubs = spec.port in HUB_PORTS
+    return ColorReading(red, green, blue, instant.profile.brick_colors, is_hubs)
 
 
 def _build_channel_reader(
@@ -423,20 +410,16 @@ def _build_channel_reader(
     return lambda value: min(response.channel(value, is_over) * light, float(WHITE))
 
 
-def _mean_of_mat(spec: ColorSensorSpec, instant: Instant, field: Field) -> ColorReading:
-    if not instant.noise.light:
-        return clear_reading(spec, instant.pose, field)
+def _measure_mean(
+    spec: ColorSensorSpec, instant: Instant, field: Field
+) -> tuple[float, float, float]:
+    """Return the mean red, green and blue of the mat under a sensor, 0 … 255, including noise."""
     if spec.strategy != "mean":
-        return ColorReading(
-            *weighted_mean(_read_noisy_box(spec, instant, field), spec.diameter_mm, spec.strategy)
-        )
-    red, green, blue = _measure_noisy_sums(spec, instant, field)
-    count = disc_pixels_of(spec.diameter_mm)
-    return ColorReading(red / count, green / count, blue / count)
-
-
-disc_pixels_of = lru_cache(maxsize=16)(count_disc_pixels)
-"""`field.count_disc_pixels`, cached."""
+        box = _read_noisy_box(spec, instant, field)
+        return weighted_mean(box, spec.diameter_mm, spec.strategy)
+    red, green, blue = _measure_sums(spec, instant, field)
+    count = count_disc_pixels(spec.diameter_mm)
+    return red / count, green / count, blue / count
 
 
 def read_pixel_array(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
