@@ -98,6 +98,28 @@ class CommandEvent:
         return f"{self.asked}{repeats}{came}"
 
 
+@dataclass(slots=True)
+class _Event:
+    """A command and its repetitions, as far as they have been read."""
+
+    row: int
+    """Row of the first command."""
+    code: int
+    """Robot, call and part, see `CommandIndex._read_codes`."""
+    first_ns: int
+    last_ns: int
+    """Times of the first and of the last command."""
+    count: int
+    low: float
+    high: float
+    """The lowest and the highest main value."""
+
+    @property
+    def call(self) -> Call:
+        """The kind of command."""
+        return _find_call(self.code)
+
+
 def parse_command_search(text: str) -> str | None:
     """Return the words after `command` in a text such as `command left run`; empty for `command` alone.
 
@@ -124,16 +146,10 @@ class CommandIndex:
         self._end = self._newest_ns = 0
         self._changes, self._change_ticks = bytearray(), array("I")
         """The records and the ticks of the commands of `IMMEDIATE_CALLS`."""
-        # Arrays take 48 bytes for each event; objects would take too much memory, as there may be two million commands.
-        self._starts, self._counts, self._codes = array("I"), array("I"), array("Q")
-        """Row of the first command, number of commands, and robot, call and part of each event."""
-        self._firsts, self._lasts = array("q"), array("q")
-        """Time of the first and the last command."""
-        self._lows, self._highs = array("d"), array("d")
-        """The lowest and the highest main value of each event."""
+        self._events: list[_Event] = []
         self._wheels: dict[int, str] = {}
         """What the last command to the left (0) and the right (1) wheel's motor asks of it, of `WHEEL_WORDS`."""
-        self._latest: dict[int, int] = {}
+        self._latest: dict[int, _Event] = {}
         """The latest event by its code."""
         self._ends: list[int] = []
         self._newest_scales: dict[str, float] = {}
@@ -143,7 +159,7 @@ class CommandIndex:
         """Ticks of events, in order."""
 
     def __len__(self) -> int:
-        return len(self._starts)
+        return len(self._events)
 
     # Reading
 
@@ -203,8 +219,8 @@ class CommandIndex:
         spreads = (np.fmin.reduceat(mains, begins), np.fmax.reduceat(mains, begins))
         turn = np.argsort(columns[0])
         lists = [column[turn].tolist() for column in (*columns, *spreads)]
-        for event in zip(*lists, strict=True):
-            self._add(*event)
+        for row, *values in zip(*lists, strict=True):
+            self._add(_Event(self._end + row, *values))
 
     def _note_changes(self, rows: Array, times: Array) -> None:
         """Store those commands that change what the program reads before the next tick, such as a reset of the gyro.
@@ -288,29 +304,22 @@ class CommandIndex:
             return plug_parts(self._robots[-1], decode_parts(values, 0))
         return self._robots[-1]
 
-    def _add(
-        self, row: int, code: int, first_ns: int, last_ns: int, count: int, low: float, high: float
-    ) -> None:
-        number = self._latest.get(code)
-        if number is not None and first_ns - self._lasts[number] <= _REPEAT_NS:
-            self._lasts[number] = last_ns
-            self._counts[number] += count
-            self._lows[number] = min(self._lows[number], low)
-            self._highs[number] = max(self._highs[number], high)
+    def _add(self, event: _Event) -> None:
+        """Add an event; if it only repeats the latest one of its code, join the two."""
+        latest = self._latest.get(event.code)
+        if latest is not None and event.first_ns - latest.last_ns <= _REPEAT_NS:
+            latest.last_ns = event.last_ns
+            latest.count += event.count
+            latest.low = min(latest.low, event.low)
+            latest.high = max(latest.high, event.high)
             return
         if len(self) == _MAX_EVENTS:
             return
-        self._latest[code] = len(self)
-        tick = self._find_tick(first_ns)
+        self._latest[event.code] = event
+        tick = self._find_tick(event.first_ns)
         if not self.marks or tick - self.marks[-1][0] > tick // _FINEST:
             self.marks.append((tick, Mark.COMMAND))
-        self._starts.append(self._end + row)
-        self._counts.append(count)
-        self._codes.append(code)
-        self._firsts.append(first_ns)
-        self._lasts.append(last_ns)
-        self._lows.append(low)
-        self._highs.append(high)
+        self._events.append(event)
 
     def _find_tick(self, time_ns: int) -> int:
         return time_ns * self._hz // NS_PER_S
@@ -345,36 +354,36 @@ class CommandIndex:
         """
         words = text.lower().split()
         names = {
-            code: f"{self._name_part(code)} {_name_call(code)} {CALL_WORDS[_find_call(code)].text}".lower()
+            code: f"{self._name_part(code)} {_name_call(_find_call(code))} {CALL_WORDS[_find_call(code)].text}".lower()
             for code in self._latest
         }
         matching = {code for code, name in names.items() if all(word in name for word in words)}
-        return [number for number, code in enumerate(self._codes) if code in matching]
+        return [number for number, event in enumerate(self._events) if event.code in matching]
 
     def tick(self, number: int) -> int:
         """Return the tick at which an event began; `number` is the event's index."""
-        return self._find_tick(self._firsts[number])
+        return self._find_tick(self._events[number].first_ns)
 
     def time_s(self, number: int) -> float:
         """Return the simulated time in seconds at which an event began; `number` is the event's index."""
-        return self._firsts[number] / NS_PER_S
+        return self._events[number].first_ns / NS_PER_S
 
     def event(self, number: int) -> CommandEvent:
         """Return an event, with its command in words; `number` is the event's index."""
-        code = self._codes[number]
-        rows = read_command_rows(self._run.folder, self._starts[number], 1)
+        event = self._events[number]
+        rows = read_command_rows(self._run.folder, event.row, 1)
         # There is no such row if the program has changed the record meanwhile.
         values = rows["values"][0].tolist() if len(rows) else [0.0] * MAX_VALUES
-        call = _find_call(code)
-        text = _name_call(code)
+        call = event.call
+        text = _name_call(call)
         with suppress(ValueError, IndexError):
-            text = describe_command(call, values, self._lows[number], self._highs[number], self._hz)
+            text = describe_command(call, values, event.low, event.high, self._hz)
         return CommandEvent(
             self.time_s(number),
-            self._name_part(code),
+            self._name_part(event.code),
             text,
-            self._counts[number],
-            self._lasts[number] / NS_PER_S,
+            event.count,
+            event.last_ns / NS_PER_S,
             self._measure(number, _find_aim(call, values)),
         )
 
@@ -406,11 +415,12 @@ class CommandIndex:
         """
         import numpy as np
 
-        part = self._codes[number] & 0xFF
+        event = self._events[number]
+        part = event.code & 0xFF
         is_speed = aim in _SPEEDS
         if aim is Aim.NONE or part > 1:
             return ""
-        start = self._find_tick((self._firsts if is_speed else self._lasts)[number])
+        start = self._find_tick(event.first_ns if is_speed else event.last_ns)
         records = self._run.telemetry.array(start)[: self._find_end(number) - start + 1]
         if len(records) < 2:
             return ""
@@ -452,11 +462,10 @@ class CommandIndex:
         ends = [0] * len(self)
         following: dict[tuple[bool, int], int] = {}
         for number in range(len(self) - 1, -1, -1):
-            code = self._codes[number]
-            call = _find_call(code)
-            part = (code >> 8 & 0xFF >= Call.BUILD_BASE, code & 0xFF)
+            event = self._events[number]
+            part = (event.call >= Call.BUILD_BASE, event.code & 0xFF)
             ends[number] = min(following.get(part, newest), newest)
-            if CALL_WORDS[call].aim is not Aim.NONE:
+            if CALL_WORDS[event.call].aim is not Aim.NONE:
                 following[part] = self.tick(number)
         return ends
 
@@ -475,8 +484,8 @@ def _find_aim(call: Call, values: Sequence[float]) -> Aim:
     return Aim.POSITION if is_to_position else CALL_WORDS[call].aim
 
 
-def _name_call(code: int) -> str:
-    return _find_call(code).name.lower().replace("_", " ")
+def _name_call(call: Call) -> str:
+    return call.name.lower().replace("_", " ")
 
 
 def _find_mains() -> Array:
