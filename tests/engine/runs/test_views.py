@@ -330,7 +330,7 @@ def test_a_long_run_takes_little_memory_and_is_read_again_from_its_file(tmp_path
         assert view.array(first)["x_mm"].tolist() == [
             float(tick) for tick in range(first, LONG + 10)
         ]
-    assert view.damage == ""
+    assert view.read_new() == ""
 
 
 def test_a_long_run_outlives_its_file(tmp_path: Path) -> None:
@@ -351,7 +351,7 @@ def test_what_a_program_changes_later_is_damage_and_no_error(tmp_path: Path, cut
     assert view.record(6).x_mm == 6.0
     assert np.isfinite(view.record(7).x_mm)
     assert len(view.array()) == LONG + 10
-    assert "record 7" in view.damage
+    assert "record 7" in view.read_new()
 
 
 LINES = 40_000
@@ -391,7 +391,7 @@ def test_much_output_takes_little_memory_and_is_read_again_from_its_file(tmp_pat
     ]
     assert len(rows[100].text) == 100_000
     assert sum(1 for _ in view.read_raw_rows()) == LINES
-    assert view.damage == ""
+    assert view.read_new() == ""
 
 
 @pytest.mark.slow
@@ -406,7 +406,7 @@ def test_output_that_a_program_changes_later_is_damage_and_no_error(tmp_path: Pa
     assert index.row(0).text == ""
     assert index.row(LINES - 1).text.strip() == f"line {LINES - 1}"
     assert view.read_all_rows() == []
-    assert "was changed" in view.damage
+    assert "was changed" in view.read_new()
 
 
 @pytest.mark.parametrize(

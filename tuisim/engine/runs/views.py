@@ -161,11 +161,6 @@ class _View(ABC):
         self._has_begun = False
 
     @property
-    def damage(self) -> str:
-        """A text that says why the file, or a part of it, is not a valid recording; empty if all of it is valid."""
-        return self._damage if self.holds else self.read_new()
-
-    @property
     def is_missing(self) -> bool:
         """Whether the run does not have this recording. A recording that is empty, but has a header, is not missing."""
         return not self._measure_length() and not self._has_begun

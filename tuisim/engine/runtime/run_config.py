@@ -118,13 +118,9 @@ _VALUES: dict[str, tuple[str, Callable[[Any], object]]] = {
 
 
 def _parse_program(plain: Mapping[str, Any]) -> Program:
-    return Program(
-        name=plain["name"],
-        text=plain["text"],
-        prelude=plain["prelude"],
-        path=plain["path"],
-        arguments=tuple(plain["arguments"]),
-        python_path=tuple(plain["python_path"]),
-        module_folder=plain["module_folder"],
-        shown_ports=None if plain["shown_ports"] is None else tuple(plain["shown_ports"]),
-    )
+    values = {
+        name: tuple(value) if isinstance(value, list) else value for name, value in plain.items()
+    }
+    # It follows from the text.
+    del values["sha256"]
+    return Program(**values)

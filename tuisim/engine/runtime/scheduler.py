@@ -28,28 +28,8 @@ STACK_BYTES = 8 << 20
 STACKS_KEPT = 8
 """Number of stacks of finished threads that may still be allocated."""
 
-_PROCESS_CALLS = (
-    "fork",
-    "forkpty",
-    "posix_spawn",
-    "posix_spawnp",
-    "execv",
-    "execve",
-    "execvp",
-    "execvpe",
-    "execl",
-    "execle",
-    "execlp",
-    "execlpe",
-    "spawnv",
-    "spawnve",
-    "spawnvp",
-    "spawnvpe",
-    "spawnl",
-    "spawnle",
-    "spawnlp",
-    "spawnlpe",
-)
+_PROCESS_CALLS = ("fork", "posix_spawn", "exec", "spawn")
+"""How the names of the functions of `os` that start processes begin."""
 
 
 def limit_memory(threads: int = 0) -> None:
@@ -76,8 +56,8 @@ def _build_refusal(name: str) -> Any:
 
 def refuse_processes() -> None:
     """Make the functions of `os` that start processes raise PermissionError."""
-    for name in _PROCESS_CALLS:
-        if hasattr(os, name):
+    for name, value in list(vars(os).items()):
+        if name.startswith(_PROCESS_CALLS) and callable(value):
             replace(os, name, _build_refusal(f"os.{name}"))
     # No code of the program may run when the debugger forks to inspect values.
     replace(os, "register_at_fork", lambda **_functions: None)
