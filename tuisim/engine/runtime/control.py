@@ -11,7 +11,6 @@ import os
 from collections import deque
 from collections.abc import Iterable
 from contextlib import suppress
-from enum import IntFlag
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -37,23 +36,19 @@ if TYPE_CHECKING:
     from tuisim.engine.runs.run_options import RunOptions
 
 
-class SessionFlag(IntFlag):
-    """The bits of `Session.flags`. Each bit makes the session do more than run ticks when time passes."""
+# The bits of `Session.flags`. Each bit makes the session do more than run ticks when time passes. They are plain
+# numbers: every reading of a sensor tests some, and an enumeration computes ten times slower.
 
-    LIVE = 1
-    """The control is called before ticks."""
-    ATTENTION = 2
-    """A command has arrived."""
-    THREADS = 4
-    """The program has several threads."""
-    STOPPING = 8
-    """The program has to end."""
-    DEBUG = 16
-    """Tracing has been switched."""
-
-
-LIVE, ATTENTION, THREADS, STOPPING, DEBUG = (flag.value for flag in SessionFlag)
-"""The bits as plain numbers: every reading of a sensor tests some, and an enumeration computes ten times slower."""
+LIVE = 1
+"""The control is called before ticks."""
+ATTENTION = 2
+"""A command has arrived."""
+THREADS = 4
+"""The program has several threads."""
+STOPPING = 8
+"""The program has to end."""
+DEBUG = 16
+"""Tracing has been switched."""
 
 SLICE_S = 0.02
 """Longest uninterrupted wait in real time."""

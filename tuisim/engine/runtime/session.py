@@ -117,7 +117,7 @@ class Session:
         self.now = 0
         self.free = 0
         self.flags = 0
-        """Bits of `SessionFlag`."""
+        """Bits such as `LIVE` of `runtime.control`."""
         self.held_up = ""
         self.shown_ports: tuple[str, ...] | None = None
         self.pressed: frozenset[str] = frozenset()
