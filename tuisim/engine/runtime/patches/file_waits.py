@@ -29,12 +29,7 @@ POLL_NS = 1_000_000
 """Interval at which a wait checks for the effects of other threads."""
 _NS_PER_MS = 1_000_000
 
-_SELECTORS = {
-    "PollSelector": "poll",
-    "EpollSelector": "epoll",
-    "KqueueSelector": "kqueue",
-    "DevpollSelector": "devpoll",
-}
+_SELECTORS = {"PollSelector": "poll", "EpollSelector": "epoll"}
 """Selector classes, and the class of `select` that each is based on."""
 _ALL_EVENTS = select.POLLIN | select.POLLPRI | select.POLLOUT
 """The events that `register` requests by default."""
@@ -149,19 +144,16 @@ class FileWaits:
             if selector_class is None:
                 continue
             if name in _SELECTORS:
-                selector_class._selector_cls = self._build_selector_class(_SELECTORS[name])
+                selector_class._selector_cls = self._build_poller(self._classes[_SELECTORS[name]])
             selector_class.select = self._build_select(selector_class.select)
 
-    def _build_selector_class(self, name: str) -> Any:
-        """Return the class of the objects with which a selector polls.
-
-        Such an object never waits, because the selector itself waits in simulated time.
+    def _build_poller(self, real: Any) -> Any:
+        """Return the class of the objects with which a selector polls: they never wait, because the selector does.
 
         Args:
-            name: The name of the real class in the module `select`, such as `poll`.
+            real: The class in the module `select`.
         """
-        real: Any = self._classes[name]
-        return staticmethod(lambda: _AtOnce(self, real())) if name in ("poll", "epoll") else real
+        return staticmethod(lambda: _AtOnce(self, real()))
 
     def _build_select(self, look: Callable[[Any, float], Any]) -> Callable[..., Any]:
         @wraps(look)
