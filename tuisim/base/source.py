@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from tuisim.base.data_class import dataclass
@@ -100,6 +101,20 @@ class Program:
     def file(self) -> str:
         """The file name in the program's tracebacks: its path, or its name if it is not in a file."""
         return self.path or self.name
+
+    def add_surroundings(self) -> Program:
+        """Return a program that has a working directory; a program that has one already is returned unchanged.
+
+        Any other program gets the working directory of this process, and the folders in the user's PYTHONPATH.
+        """
+        if self.working_directory:
+            return self
+        try:
+            here = os.getcwd()
+        except FileNotFoundError:
+            # The working directory has been deleted.
+            here = ""
+        return replace(self, python_path=user_python_path(), working_directory=here)
 
     @property
     def sha256(self) -> str:

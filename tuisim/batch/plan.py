@@ -17,7 +17,7 @@ from tuisim.batch.parameters import SEED, Choice, Grid, build_grid, check_seeds
 from tuisim.batch.table import check_expressions
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.core.tree import dump_run
-from tuisim.engine.runs.handle import RunOptions, set_surroundings
+from tuisim.engine.runs.handle import RunOptions
 from tuisim.programs.program_settings import require_library
 from tuisim.settings.build import build_run_spec, list_ineffective
 from tuisim.settings.options import Settings
@@ -69,7 +69,7 @@ class Plan:
     def __post_init__(self) -> None:
         # A worker may run in another folder, so the program keeps the working directory of this process.
         subjects = tuple(
-            replace(each, program=set_surroundings(each.program)) for each in self.subjects
+            replace(each, program=each.program.add_surroundings()) for each in self.subjects
         )
         object.__setattr__(self, "subjects", subjects)
         first = self.subjects[0]

@@ -13,7 +13,7 @@ from tests.running import Done, over
 from tuisim.commands.rerun import rerun
 from tuisim.engine.runs.diff import diff_runs
 from tuisim.engine.runs.frames import build_telemetry_columns
-from tuisim.engine.runs.handle import RunHandle, RunOptions, set_surroundings
+from tuisim.engine.runs.handle import RunHandle, RunOptions
 from tuisim.engine.runs.run_folder import field_files
 from tuisim.engine.runs.store import RunStore
 from tuisim.logs.export import export_telemetry
@@ -89,7 +89,7 @@ def run_program(
     found = build_program_settings(source, {} if robot is None else {"robot": robot})
     program = found.apply(source.program)
     spec = build_run_spec(found.settings)
-    program = set_surroundings(program)
+    program = program.add_surroundings()
     how = RunOptions(time_limit_s=60.0, **options)
     return over(RunHandle(program, spec, field_files(spec), how, RunStore(), of_many=of_many))
 

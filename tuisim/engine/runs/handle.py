@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim.base.errors import HostError, LogError, RobotError, counted
-from tuisim.base.source import Program, user_python_path
+from tuisim.base.source import Program
 from tuisim.engine.breakpoints import parse_breakpoints
 from tuisim.engine.core.plugged import PluggedPart
 from tuisim.engine.core.profile import compute_due_ns
@@ -606,24 +606,6 @@ def describe_falsified(what: str) -> str:
     return f"the program has falsified its recording: {what}"
 
 
-def _find_here() -> str:
-    try:
-        return os.getcwd()
-    except FileNotFoundError:
-        # The working directory has been deleted.
-        return ""
-
-
-def set_surroundings(program: Program) -> Program:
-    """Return a program that has a working directory; a program that has one already is returned unchanged.
-
-    Any other program gets the working directory of this process, and the folders in the user's PYTHONPATH.
-    """
-    if program.working_directory:
-        return program
-    return replace(program, python_path=user_python_path(), working_directory=_find_here())
-
-
 def start_run(
     program: Program, spec: RunSpec, options: RunOptions, store: RunStore | None = None
 ) -> RunHandle:
@@ -644,5 +626,5 @@ def start_run(
     """
     parse_breakpoints(options.breaks, spec)
     return RunHandle(
-        set_surroundings(program), spec, field_files(spec), options, store or RunStore()
+        program.add_surroundings(), spec, field_files(spec), options, store or RunStore()
     )
