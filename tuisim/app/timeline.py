@@ -25,7 +25,7 @@ from tuisim.engine.core.sensors import find_named_column, list_column_names, lis
 from tuisim.engine.runs.brick_state import BrickState
 from tuisim.engine.runs.command_events import parse_command_search
 from tuisim.engine.runs.frames import compute_column_values, evaluate_condition
-from tuisim.engine.runs.records import TEXT_STREAMS, Mark, OutputRow
+from tuisim.engine.runs.records import Mark, OutputRow
 from tuisim.engine.runs.samples import parse_sample, select_rows
 
 if TYPE_CHECKING:
@@ -243,7 +243,7 @@ class _Search:
             if self.back
             else rows.rows(rows.until(self.at))
         )
-        return (row for row in found if row.stream in TEXT_STREAMS)
+        return (row for row in found if row.is_text)
 
     def find_tick(self, condition: ValueCondition) -> int | None:
         """Return the tick of the nearest printed row that meets a condition, in the direction of the search.
@@ -251,7 +251,7 @@ class _Search:
         The result is None if no such row does.
         """
         if condition.operator is Operator.CHANGES:
-            every = (row for row in self.recording.rows.rows(0) if row.stream in TEXT_STREAMS)
+            every = (row for row in self.recording.rows.rows(0) if row.is_text)
             return self.find_nearest([row.tick for row in select_rows(condition, every)])
         return next((row.tick for row in select_rows(condition, self.texts())), None)
 
@@ -453,7 +453,7 @@ def _find_sample(search: _Search, condition: ValueCondition) -> int:
 
 def _list_printed_names(recording: Recording) -> Iterator[str]:
     """Yield the name of each printed sample of a run."""
-    printed = (row for row in recording.rows.rows(0) if row.stream in TEXT_STREAMS)
+    printed = (row for row in recording.rows.rows(0) if row.is_text)
     return (sample[0] for row in printed if (sample := parse_sample(row.text)))
 
 

@@ -24,7 +24,7 @@ from tuisim.engine.runs.contacts import (
 )
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.run_folder import StoredRun
-from tuisim.engine.runs.samples import counts_of, describe_near_sample
+from tuisim.engine.runs.samples import describe_near_sample
 from tuisim.programs.plugged_words import describe_plugged
 from tuisim.tasks.reasons.reason import describe_end
 
@@ -68,9 +68,8 @@ def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
     pose = last.pose if last else run.spec.world.start
     stood = find_standstill(run.telemetry, run.spec)
     push = find_push(run.telemetry, run.spec)
-    counts = (
-        counts_of(run.output) if most_bytes is None or run.output.length <= most_bytes else None
-    )
+    is_counted = most_bytes is None or run.output.length <= most_bytes
+    lines, samples = run.output.count_rows() if is_counted else (None, None)
     return {
         "run": run.number,
         "id": run.id,
@@ -93,8 +92,8 @@ def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
         "left_field": has_left_field(run.telemetry, run.spec),
         **describe_end(run),
         "plugged": [part.to_plain() for part in run.plugged],
-        "lines": counts.lines if counts else None,
-        "samples": counts.samples if counts else None,
+        "lines": lines,
+        "samples": samples,
         "summary": end.summary if end else "",
         "error": end.error if end else "",
         "error_line": end.error_line if end else 0,

@@ -439,7 +439,6 @@ class Lab:
 
     def _build_scene(self, plan: _CellPlan) -> tuple[Scene, str]:
         """Return the scene and the status line to show while no program runs."""
-        from tuisim.engine.runs.records import TEXT_STREAMS
         from tuisim.engine.runs.samples import list_samples
         from tuisim.notebook.cell_output import format_row
         from tuisim.notebook.cell_run import describe_end
@@ -457,7 +456,7 @@ class Lab:
             spec = self._last.spec
             files = self._last.find_mat_files()
         rows = self._last.output.read_all_rows()
-        printed = [format_row(row) for row in rows if row.stream in TEXT_STREAMS]
+        printed = [format_row(row) for row in rows if row.is_text]
         last = self._last.telemetry.last() or start
         samples = list_samples(rows)
         status = ready if is_other else describe_end(self._last)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, assert_never
 from tuisim.base.data_class import dataclass
 from tuisim.base.source import source_lines
 from tuisim.engine.core.tree import dump_run
-from tuisim.engine.runs.records import TEXT_STREAMS, OutputRow, Stream
+from tuisim.engine.runs.records import OutputRow, Stream
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.samples import list_samples
 
@@ -359,7 +359,7 @@ def _find_first_row(
             _, now, now_s = right or (None, None, None)
             return RowDifference(number, was, now, (was_s, now_s))
         # Rows of motors, LEDs and pictures are compared, too, but not counted, because users do not see them as rows.
-        number += not isinstance(left[0], OutputRow) or left[0].stream in TEXT_STREAMS
+        number += not isinstance(left[0], OutputRow) or left[0].is_text
     return None
 
 

@@ -334,6 +334,16 @@ class OutputRow:
     line: int
     stream: Stream
 
+    @property
+    def is_text(self) -> bool:
+        """Whether its text is one to read, not a part of the brick's state."""
+        return self.stream in TEXT_STREAMS
+
+    @property
+    def may_be_sample(self) -> bool:
+        """Whether a sample in its text counts."""
+        return self.stream in SAMPLE_STREAMS
+
     def format_line(self) -> str:
         """Return the display text of a row: speech begins with `says: `, and an answer to `input()` with `> `."""
         if self.stream is Stream.SPEECH and not self.text.startswith("["):

@@ -10,18 +10,11 @@ import math
 import re
 from collections.abc import Callable, Iterable, Iterator
 from itertools import islice
-from typing import TYPE_CHECKING
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import listed
 from tuisim.engine.core.conditions import NUMBER, ValueCondition, ValueSource
-from tuisim.engine.runs.records import SAMPLE_STREAMS, OutputRow, Stream
-
-if TYPE_CHECKING:
-    from tuisim.engine.runs.views import OutputView
-
-_STDOUT = Stream.STDOUT
-"""Runs may print millions of rows, and an attribute of an enumeration is slow to reach."""
+from tuisim.engine.runs.records import SAMPLE_STREAMS, OutputRow
 
 _SAMPLE = re.compile(rf"(?:\^log[ \t]+)?([^\W\d]\w*):[ \t]*({NUMBER})(?:[ \t]+({NUMBER}))?\s*")
 _PLAIN_SAMPLE = re.compile(
@@ -99,29 +92,12 @@ def describe_near_sample(rows: Iterable[OutputRow]) -> str:
     )
 
 
-@dataclass(frozen=True, slots=True)
-class Counts:
-    """The numbers of printed lines and samples in a program's output."""
-
-    lines: int
-    samples: int
-
-
-def counts_of(output: OutputView) -> Counts:
-    """Return the numbers of printed lines and samples.
-
-    No `OutputRow` is created for a row, because there may be a million rows.
-    """
-    lines = samples = 0
-    for stream, text in output.read_raw_rows():
-        if stream in SAMPLE_STREAMS:
-            lines += stream == _STDOUT
-            if b":" in text and (
-                _PLAIN_SAMPLE.fullmatch(text)
-                or parse_sample(str(text, "utf-8", "replace")) is not None
-            ):
-                samples += 1
-    return Counts(lines, samples)
+def is_sample(text: bytes) -> bool:
+    """Return whether a printed line, as the bytes of the recording, is a sample."""
+    return b":" in text and (
+        _PLAIN_SAMPLE.fullmatch(text) is not None
+        or parse_sample(str(text, "utf-8", "replace")) is not None
+    )
 
 
 def list_samples(rows: Iterable[OutputRow]) -> list[Sample]:

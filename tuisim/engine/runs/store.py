@@ -34,7 +34,6 @@ from tuisim.engine.runs.run_folder import (
     read_run_file,
     write_run_file,
 )
-from tuisim.engine.runs.samples import counts_of
 from tuisim.engine.runs.side_files import MAX_BYTES, SIDE_FILES, hold, is_held
 from tuisim.engine.runs.views import OutputView, TelemetryView
 
@@ -169,7 +168,7 @@ class RunStore:
                 run.folder, {**run.data, "tags": _read_tags(run.folder), "end": asdict(end)}
             )
         output = OutputView(run.folder, end.end is End.FALSIFIED)
-        samples = counts_of(output).samples if output.length <= _COUNT_AT_ONCE_BYTES else None
+        samples = output.count_rows()[1] if output.length <= _COUNT_AT_ONCE_BYTES else None
         # If the catalogue cannot be written now, it will be updated later.
         with suppress(LogError):
             self._catalogue.update(
@@ -406,16 +405,15 @@ class RunStore:
         try:
             output = OutputView(folder)
             if output.length <= most_bytes:
-                known = replace(known, samples=counts_of(output).samples)
+                known = replace(known, samples=output.count_rows()[1])
                 counted = output.length
             if known.end in (Unended.RUNNING, Unended.INTERRUPTED):
                 known = _add_last_record(known, folder)
         except LogError as error:
             return replace(known, summary=known.summary or str(error)), {}, counted
         # If this machine cannot find out whether the lock is held, the run may be running.
-        unlocked = is_held(folder) is False
         if known.end in (Unended.RUNNING, Unended.DAMAGED) or (
-            known.end is Unended.INTERRUPTED and not unlocked
+            known.end is Unended.INTERRUPTED and is_held(folder) is not False
         ):
             return known, {}, counted
         names = ["end", "ticks", "time_s", "samples", "summary"]

@@ -44,6 +44,7 @@ from tuisim.engine.runs.records import (
     OUTPUT_FILE,
     OUTPUT_MAGIC,
     OUTPUT_ROW,
+    SAMPLE_STREAMS,
     TELEMETRY_FILE,
     TELEMETRY_MAGIC,
     OutputRow,
@@ -53,6 +54,7 @@ from tuisim.engine.runs.records import (
     iterate_rows,
     read_published_length,
 )
+from tuisim.engine.runs.samples import is_sample
 
 if TYPE_CHECKING:
     import numpy as np
@@ -60,6 +62,10 @@ if TYPE_CHECKING:
 _LARGE_BYTES = 1 << 20
 _CHUNK_BYTES = 1 << 22
 """Bytes that are read and checked at a time: a file may claim, or seem to have, any length."""
+_KEPT_BYTES = 1 << 20
+"""The rows of no longer output stay in memory."""
+_STDOUT = Stream.STDOUT
+"""Runs may print millions of rows, and an attribute of an enumeration is slow to reach."""
 _AGAIN_BYTES = 1 << 14
 """Bytes that are read at a time of rows that are no longer in memory."""
 _MANY_TICKS = 1 << 13
@@ -217,13 +223,6 @@ class _View(ABC):
         damage = self.read_new()
         self.holds = True
         return damage
-
-    def _get_known(self, count: int) -> memoryview | None:
-        """Return a read-only view of the copy, in which at least the first `count` records will not change any more.
-
-        Return None if the copy has at most `count` records.
-        """
-        return memoryview(self._copy).toreadonly() if count < self._there else None
 
     def _read_new(self) -> None:
         try:
@@ -460,18 +459,15 @@ class TelemetryView(_View):
         Raises:
             IndexError: the record does not exist (yet).
         """
-        data = self._get_known(index + 1) if index >= 0 else None
-        if data is None:
-            data, count = self._look()
+        # Only the newest record may still change, or be missing: then the file is read.
+        if not 0 <= index < self._there - 1:
+            count = self.count
             if not 0 <= index < count:
                 raise IndexError(f"no telemetry record {index}, there are {count}")
         if index < self._dropped:
             return TickRecord(*TICK_RECORD.unpack(self._read_again(index, index + 1)))
-        return TickRecord(
-            *TICK_RECORD.unpack_from(
-                data, HEADER_BYTES + (index - self._dropped) * TICK_RECORD.size
-            )
-        )
+        offset = HEADER_BYTES + (index - self._dropped) * TICK_RECORD.size
+        return TickRecord(*TICK_RECORD.unpack_from(self._copy, offset))
 
     def array(self, first: int = 0) -> np.ndarray[Any, Any]:
         """Return all present records from index `first` on, as a read-only structured array of `TICK_FIELDS`.
@@ -501,6 +497,9 @@ class OutputView(_View):
     _most_bytes = 2 * MAX_OUTPUT_BYTES
     _kept = 1 << 20
     _seen = 0
+    _kept_rows: list[OutputRow]
+    _kept_length = -1
+    """Length of the output of which `_kept_rows` are all rows."""
     _checked = 0
     """Position up to which all rows are complete and valid."""
 
@@ -554,8 +553,17 @@ class OutputView(_View):
         return bool(self._dropped) or re.search(re.escape(text.encode()), data) is not None
 
     def read_all_rows(self) -> list[OutputRow]:
-        """Return all output rows so far, without changing what `read_new_rows` returns next."""
-        return list(self.rows())
+        """Return all output rows so far, without changing what `read_new_rows` returns next.
+
+        The rows of a short output are kept, because each of its readers reads all of them.
+        """
+        length = self._measure_length()
+        if length > _KEPT_BYTES:
+            return [row for row, _ in self.read_rows(0)]
+        if length != self._kept_length:
+            self._kept_rows = [row for row, _ in self.read_rows(0)]
+            self._kept_length = length
+        return self._kept_rows
 
     def read_rows(self, position: int) -> Iterator[tuple[OutputRow, int]]:
         """Yield the rows from a byte position on, each with the position after it.
@@ -619,8 +627,22 @@ class OutputView(_View):
         return iterate_raw_rows(data, end)
 
     def rows(self) -> Iterator[OutputRow]:
-        """Yield the rows of `read_all_rows` one by one, because a run may print a million lines."""
-        return map(itemgetter(0), self.read_rows(0))
+        """Yield the rows of `read_all_rows`; those of a long output one by one, as a run may print a million lines."""
+        if self._measure_length() > _KEPT_BYTES:
+            return map(itemgetter(0), self.read_rows(0))
+        return iter(self.read_all_rows())
+
+    def count_rows(self) -> tuple[int, int]:
+        """Return the numbers of printed lines and samples.
+
+        No `OutputRow` is created for a row, because there may be a million rows.
+        """
+        lines = samples = 0
+        for stream, text in self.read_raw_rows():
+            if stream in SAMPLE_STREAMS:
+                lines += stream == _STDOUT
+                samples += is_sample(text)
+        return lines, samples
 
 
 def open_views(folder: Path, is_checked: bool = False) -> tuple[TelemetryView, OutputView]:

@@ -14,7 +14,7 @@ from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.protocol import End, Ended, Unended
 from tuisim.engine.runs.frames import compute_column_values, evaluate_condition, tick_times_s
 from tuisim.engine.runs.readings import Readings, read_readings
-from tuisim.engine.runs.records import SAMPLE_STREAMS, OutputRow, Stream
+from tuisim.engine.runs.records import OutputRow, Stream
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.samples import Sample, find_samples, select_rows
 from tuisim.tasks.goals.brick import (
@@ -247,9 +247,9 @@ class Evidence:
             return [
                 number
                 for number, row in enumerate(self.rows)
-                if row.stream in SAMPLE_STREAMS and search(row.text)
+                if row.may_be_sample and search(row.text)
             ]
-        printed = [row for row in self.rows if row.stream in SAMPLE_STREAMS]
+        printed = [row for row in self.rows if row.may_be_sample]
         ids = set(map(id, select_rows(condition, printed)))
         return [number for number, row in enumerate(self.rows) if id(row) in ids]
 
