@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Iterator, Sequence
-from itertools import starmap, takewhile
+from itertools import takewhile
 from typing import NamedTuple
 
 from tuisim.base.data_class import dataclass
@@ -61,45 +61,41 @@ class Heading:
     """Line of the file with the names, 0 if there is none."""
 
 
-class _Line(NamedTuple):
-    row: int
+class Row(NamedTuple):
+    """A row of cells in a text."""
+
+    line: int
     """Line of the file, from 1."""
     cells: list[str]
-    kinds: str
-    next_row: int
-    """Line of the file that follows."""
 
-
-class _Rank(NamedTuple):
-    """How certainly some lines are the rows of a table.
-
-    Ranks are compared by their fields, the most important first.
-    """
-
-    is_table: bool
-    """Whether there are several columns, and numbers."""
-    length: int
-    numbers: int
-    """Columns with numbers or times."""
-    words: int
-    """Columns with words, negative: the fewer, the better."""
-    width: int
+    @property
+    def kinds(self) -> str:
+        """The kinds of its cells, see `parse_kinds`."""
+        return parse_kinds(self.cells)
 
 
 class _Run(NamedTuple):
-    """Consecutive lines with the same number and kinds of cells."""
+    """Consecutive rows with the same number and kinds of cells."""
 
     start: int
     length: int
     kinds: str
 
     @property
-    def rank(self) -> _Rank:
-        """How certainly these lines are the rows of a table."""
-        numbers = sum(kind in "nt" for kind in self.kinds)
-        words = -self.kinds.count("w")
-        width = len(self.kinds)
-        return _Rank(width > 1 and numbers > 0, self.length, numbers, words, width)
+    def numbers(self) -> int:
+        """The number of columns with numbers or times."""
+        return sum(kind in "nt" for kind in self.kinds)
+
+    @property
+    def is_table(self) -> bool:
+        """Whether there are several columns, and numbers."""
+        return len(self.kinds) > 1 and self.numbers > 0
+
+    @property
+    def rank(self) -> tuple[int, ...]:
+        """How certainly these are the rows of a table: ranks are compared, the most important number comes first."""
+        words = self.kinds.count("w")
+        return self.is_table, self.length, self.numbers, -words, len(self.kinds)
 
 
 def parse_kinds(cells: Sequence[str]) -> str:
@@ -132,60 +128,51 @@ def find_heading(
     Raises:
         LogError: `header_row` is not the number of one of the lines.
     """
-    comments: Sequence[tuple[int, str]] = ()
     if header_row:
-        lines = _skip_to(lines, header_row)
-    else:
-        separator, lines = _read_excel_line(lines, separator)
-        comments, lines = _split_comments(lines)
+        return _read_chosen(lines, notes, separator, header_row)
+    if excel := _EXCEL.fullmatch(lines[0][1]):
+        separator = separator or excel[1]
+        lines = lines[1:]
+    comments, lines = _split_comments(lines)
     # Only `#` marks comments below: a row of units, too, may begin with a percent sign.
     has_comments = bool(comments) and comments[0][1].startswith("#")
     if not lines:
         return Heading(has_comments=has_comments)
     separator = separator or sniff_separator([text for _, text in lines])
-    table = _split_lines(lines, separator)
-    if header_row:
-        run = _find_table(table[1:] or table)
-        start = min(1 + run.start, len(table))
-        names: Sequence[str] | None = table[0].cells
-        row = header_row
-        _tell_unread(table[1:start], "below the heading", notes)
-    else:
-        table = [*_read_comments(comments, table[0], separator), *table]
-        run = _find_table(table)
-        start = _find_first_row(table, run)
-        names, above, start = _find_names(table, table[:start], start, run)
-        row = table[len(above)].row
-        _tell_unread(above, "above the table", notes)
-    if names is None:
-        names = _number_columns(table[start].cells, notes)
-        row = 0
-    follow = table[start].row if start < len(table) else table[-1].next_row
+    rows = list(split_rows(lines, separator))
+    rows = [*_read_comments(comments, rows[0], separator), *rows]
+    run = _find_table(rows)
+    # Rows directly above the typical ones belong to the table, too, even if one of their cells is of another kind.
+    start = run.start
+    while start and _is_row(rows[start - 1].kinds, run.kinds):
+        start -= 1
+    names, above = _find_names(rows[:start], run.kinds)
+    if not names and not has_numbers(rows[start].kinds):
+        # The first row has the names, although it looks like the rows below it.
+        names = rows[start].cells
+        start += 1
+    _tell_unread(above, "above the table", notes)
+    row = rows[len(above)].line if names else 0
+    follow = rows[start].line if start < len(rows) else lines[-1][0] + 1
+    names = names or _number_columns(rows[start].cells, notes)
     return Heading(_clean_names(names, notes), separator, has_comments, follow, run.kinds, row)
 
 
-def _skip_to(lines: Sequence[tuple[int, str]], row: int) -> Sequence[tuple[int, str]]:
-    """Return the lines of a file from a line number on.
-
-    Args:
-        lines: Lines, each with its number in the file.
-        row: The number of the first line to return.
-
-    Raises:
-        LogError: no line has that number.
-    """
-    lines = [line for line in lines if line[0] >= row]
-    if not lines or lines[0][0] != row:
-        raise LogError(f"has no line {row} for --header", "lines count from 1")
-    return lines
-
-
-def _read_excel_line(
-    lines: Sequence[tuple[int, str]], separator: str
-) -> tuple[str, Sequence[tuple[int, str]]]:
-    """Return the separator, and the lines without a first line such as `sep=;`, in which Excel gives the separator."""
-    excel = _EXCEL.fullmatch(lines[0][1])
-    return (separator or excel[1], lines[1:]) if excel else (separator, lines)
+def _read_chosen(
+    lines: Sequence[tuple[int, str]], notes: Notes, separator: str, header_row: int
+) -> Heading:
+    """Return the heading that is in a chosen line; the arguments are those of `find_heading`."""
+    lines = [line for line in lines if line[0] >= header_row]
+    if not lines or lines[0][0] != header_row:
+        raise LogError(f"has no line {header_row} for --header", "lines count from 1")
+    separator = separator or sniff_separator([text for _, text in lines])
+    names, *rows = split_rows(lines, separator)
+    run = _find_table(rows or [names])
+    _tell_unread(rows[: run.start], "below the heading", notes)
+    follow = rows[run.start].line if rows else header_row + 1
+    return Heading(
+        _clean_names(names.cells, notes), separator, False, follow, run.kinds, header_row
+    )
 
 
 def _split_comments(
@@ -200,42 +187,27 @@ def _split_comments(
     return comments, others if sign == "#" else lines[len(comments) :]
 
 
-def _read_comment(comment: tuple[int, str], below: _Line, separator: str) -> _Line | None:
-    """Return the comment above a table as the heading with the names of the columns, such as `# time, distance`.
-
-    The result is None if the comment has numbers, or not the same number of cells as the line below it.
-
-    Args:
-        comment: Line number and text.
-        below: The next line.
-        separator: The separator of cells.
-    """
-    row, text = comment
-    names = [name.strip() for name in split_cells(text.lstrip("#%/; \t"), separator)]
-    kinds = parse_kinds(names)
-    is_heading = len(names) == len(below.cells) and is_words(kinds)
-    return _Line(row, names, kinds, below.row) if is_heading else None
-
-
 def _read_comments(
-    comments: Sequence[tuple[int, str]], below: _Line, separator: str
-) -> list[_Line]:
-    """Return the lines of a heading in the comments above a table: names, or names and units; empty if there is none.
+    comments: Sequence[tuple[int, str]], below: Row, separator: str
+) -> Sequence[Row]:
+    """Return the rows of a heading in the comments above a table: names, or names and units; empty if there is none.
 
-    The heading is the last comment. If this has the units, the names are in the comment above it.
+    The heading is the last comment. If this has the units, the names are in the comment above it. A heading, such as
+    `# time, distance`, has no numbers, and as many cells as the row below it.
     """
-    headings = [_read_comment(comment, below, separator) for comment in comments[-2:]]
-    match headings:
-        case [_Line() as names, _Line() as units] if _has_units(units.cells, names):
-            return [names, units]
-        case [*_, _Line() as names]:
-            return [names]
-    return []
+    rows = [
+        Row(line, [name.strip() for name in split_cells(text.lstrip("#%/; \t"), separator)])
+        for line, text in comments[-2:]
+    ]
+    fits = [len(row.cells) == len(below.cells) and is_words(row.kinds) for row in rows]
+    if not fits or not fits[-1]:
+        return ()
+    return rows if all(fits) and _has_units(rows[-1].cells, rows[0]) else rows[-1:]
 
 
-def _tell_unread(lines: Sequence[_Line], where: str, notes: Notes) -> None:
-    unread = f"{counted(len(lines), 'line')} {where} not read"
-    notes.say_rows(unread, [line.row for line in lines])
+def _tell_unread(rows: Sequence[Row], where: str, notes: Notes) -> None:
+    unread = f"{counted(len(rows), 'line')} {where} not read"
+    notes.say_rows(unread, [row.line for row in rows])
 
 
 def _clean_names(names: Sequence[str], notes: Notes) -> tuple[str, ...]:
@@ -261,19 +233,8 @@ def close_quotes(text: str, separator: str) -> str:
     return re.sub(rf'(?m)(?:^|(?<={sign}))[ \t]+(?=")|(?<=")[ \t]+(?={sign})', "", text)
 
 
-def _split_lines(lines: Sequence[tuple[int, str]], separator: str) -> list[_Line]:
-    return [
-        _Line(row, cells, parse_kinds(cells), next_row)
-        for row, cells, next_row in split_rows(lines, separator, 0)
-    ]
-
-
-def split_rows(
-    lines: Sequence[tuple[int, str]], separator: str, width: int
-) -> Iterator[tuple[int, list[str], int]]:
-    """Yield for each row its line number, its cells, and the line number of the next row.
-
-    A quoted cell may span lines.
+def split_rows(lines: Sequence[tuple[int, str]], separator: str, width: int = 0) -> Iterator[Row]:
+    """Yield the rows of a text. A quoted cell may span lines.
 
     Args:
         lines: Each with its number in the file; blank lines are skipped.
@@ -284,31 +245,28 @@ def split_rows(
     joins_left = _MAX_JOINS
     start = 0
     while start < len(lines):
-        row, text = lines[start]
+        number, text = lines[start]
         cells: list[str] = []
-        stop = start + 1
+        count = 1
         if text.count('"') % 2 and joins_left:
-            cells, stop = _join_lines(lines, start, separator, width)
+            texts = [text for _, text in lines[start : start + _MAX_LINES]]
+            cells, count = _join_lines(texts, separator, width)
             joins_left -= not cells
-        start = stop
+        start += count
         if text.strip():
-            next_row = lines[stop][0] if stop < len(lines) else row + 1
-            yield row, cells or split_cells(text, separator), next_row
+            yield Row(number, cells or split_cells(text, separator))
 
 
-def _join_lines(
-    lines: Sequence[tuple[int, str]], start: int, separator: str, width: int
-) -> tuple[list[str], int]:
-    """Return the cells of a row that spans several lines, and the index of the line after it.
+def _join_lines(texts: Sequence[str], separator: str, width: int) -> tuple[list[str], int]:
+    """Return the cells of a row that spans several lines, and the number of these lines.
 
     There are no cells if the row does not span lines.
     """
-    texts = [text for _, text in lines[start : start + _MAX_LINES]]
     reader = csv.reader([text + "\n" for text in texts], delimiter=separator, strict=True)
     try:
         cells = next(reader)
     except csv.Error:
-        return [], start + 1
+        return [], 1
     count = reader.line_num
     width = width or len(split_cells(texts[min(count, len(texts) - 1)], separator))
     inner = [text.split(separator) for text in texts[1:count]]
@@ -316,26 +274,25 @@ def _join_lines(
         len(row) == width and ('"' not in separator.join(row) or parse_kinds(row[:1]) == "n")
         for row in inner
     )
-    return ([], start + 1) if has_rows or not 1 < len(cells) == width else (cells, start + count)
+    return ([], 1) if has_rows or not 1 < len(cells) == width else (cells, count)
 
 
 def sniff_separator(lines: Sequence[str]) -> str:
     """Return the separator that splits lines into the cells of a table best: one of `SEPARATORS` or `BLANKS`."""
-    ranks = {sign: _rank_separator(lines, sign) for sign in (*SEPARATORS, BLANKS)}
+    runs = {
+        sign: _find_table(list(split_rows(list(enumerate(lines)), sign)))
+        for sign in (*SEPARATORS, BLANKS)
+    }
+    blanks = runs[BLANKS]
     # Without any number, the separator that all lines have equally often is the best.
-    best = max(SEPARATORS, key=lambda sign: (ranks[sign].width > 1, ranks[sign]))
-    signs = ranks[best]
-    blanks = ranks[BLANKS]
-    beats = best == "," and blanks > signs and _has_inner_commas(lines)
+    best = max(SEPARATORS, key=lambda sign: (len(runs[sign].kinds) > 1, runs[sign].rank))
+    signs = runs[best]
+    beats = best == "," and blanks.rank > signs.rank and _has_inner_commas(lines)
     if blanks.is_table and (beats or not signs.is_table) and 2 * blanks.length >= len(lines) - 1:
         return BLANKS
-    if signs.width > 1:
+    if len(signs.kinds) > 1:
         return best
-    return BLANKS if blanks.width > 1 and blanks.length == len(lines) else ","
-
-
-def _rank_separator(lines: Sequence[str], separator: str) -> _Rank:
-    return _find_table(_split_lines(list(enumerate(lines)), separator)).rank
+    return BLANKS if len(blanks.kinds) > 1 and blanks.length == len(lines) else ","
 
 
 def _has_inner_commas(lines: Sequence[str]) -> bool:
@@ -347,34 +304,34 @@ def _has_inner_commas(lines: Sequence[str]) -> bool:
     return 2 * outside <= len(lines)
 
 
-def _find_table(table: Sequence[_Line]) -> _Run:
-    """Return the run of lines that is the table.
+def _find_table(rows: Sequence[Row]) -> _Run:
+    """Return the run of rows that is the table.
 
     It is the first long run whose rows begin with a number or a time; without one, the run that most certainly is a
     table.
     """
-    runs = list(_find_runs(table))
-    best = max(runs, key=lambda run: run.rank._replace(is_table=run.rank.numbers > 0))
-    strong = [run for run in runs if run.kinds[0] in "nt" and run.rank.is_table]
+    runs = list(_find_runs(rows))
+    strong = [run for run in runs if run.kinds[0] in "nt" and run.is_table]
     longest = max((run.length for run in strong), default=0)
+    best = max(runs, key=lambda run: (run.numbers > 0, run.rank[1:]))
     return next((run for run in strong if _MIN_PART * run.length >= longest), best)
 
 
-def _find_runs(table: Sequence[_Line]) -> Iterator[_Run]:
+def _find_runs(rows: Sequence[Row]) -> Iterator[_Run]:
     start = 0
-    kinds = table[0].kinds
-    for index, line in enumerate(table[1:], 1):
-        both = _merge_kinds(kinds, line.kinds)
+    kinds = rows[0].kinds
+    for index, row in enumerate(rows[1:], 1):
+        both = _merge_kinds(kinds, row.kinds)
         if both is None:
             yield _Run(start, index - start, kinds)
             start = index
-            both = line.kinds
+            both = row.kinds
         kinds = both
-    yield _Run(start, len(table) - start, kinds)
+    yield _Run(start, len(rows) - start, kinds)
 
 
 def _merge_kinds(kinds: str, others: str) -> str | None:
-    """Return the kinds of the cells that two lines have in common, such as `tn` for `t-` and `tn`; None if they differ.
+    """Return the kinds of the cells that two rows have in common, such as `tn` for `t-` and `tn`; None if they differ.
 
     An empty cell, `-`, can be of any kind.
     """
@@ -382,17 +339,6 @@ def _merge_kinds(kinds: str, others: str) -> str | None:
     if len(kinds) != len(others) or any(a != b and "-" not in (a, b) for a, b in pairs):
         return None
     return "".join(b if a == "-" else a for a, b in pairs)
-
-
-def _find_first_row(table: Sequence[_Line], run: _Run) -> int:
-    """Return the index of the table's first row, given the run of its typical rows.
-
-    Lines directly above the run are rows of the table, too, even if one of their cells is of another kind.
-    """
-    start = run.start
-    while start and _is_row(table[start - 1].kinds, run.kinds):
-        start -= 1
-    return start
 
 
 def _is_row(kinds: str, usual: str) -> bool:
@@ -411,60 +357,52 @@ def is_words(kinds: str) -> bool:
     return "w" in kinds and "n" not in kinds
 
 
-def _find_names(
-    table: Sequence[_Line], above: list[_Line], start: int, run: _Run
-) -> tuple[list[str] | None, list[_Line], int]:
-    """Return the names of a table's columns, the lines above its heading, and the index of its first row.
-
-    The names are None if the table has no heading.
+def _find_names(above: Sequence[Row], usual: str) -> tuple[Sequence[str], Sequence[Row]]:
+    """Return the names of a table's columns, empty if the rows above it have none, and the rows above the names.
 
     Args:
-        table: The lines of the table.
-        above: The lines above it.
-        start: The index of the first line that may be a row.
-        run: The table's typical rows.
+        above: The rows above the table.
+        usual: The kinds of the table's typical rows.
     """
-    width = len(run.kinds)
-    above = [_leave_out_settings(line, run.kinds) for line in above]
-    if above:
-        *before, last = above
-        if before and _has_gaps(last, before[-1]):
-            *before, last = before
-        if len(last.kinds) == width and is_words(last.kinds):
-            if before and len(before[-1].kinds) == width and _has_units(last.cells, before[-1]):
-                pairs = zip(before[-1].cells, last.cells, strict=True)
-                return list(starmap(_join_unit, pairs)), before[:-1], start
-            return last.cells, before, start
-        if is_words(last.kinds) and len(last.kinds) > 1 and abs(len(last.kinds) - width) == 1:
-            # R writes no name above the names of rows, and some programs end each row with a separator.
-            if len(last.kinds) > width or run.kinds[-1] == "-":
-                return last.cells, before, start
-            if not before and run.kinds[0] != "t":
-                return ["", *last.cells], before, start
-        if not is_words(table[start].kinds):
-            return None, above, start
-    rows = table[start:]
-    if _has_names(rows):
-        return rows[0].cells, above, start + 1
-    return None, above, start
+    if not above:
+        return (), above
+    width = len(usual)
+    *before, names = (_leave_out_settings(row, usual) for row in above)
+    if before and _has_gaps(names, before[-1]):
+        names = before.pop()
+    count = len(names.cells)
+    if not is_words(names.kinds):
+        return (), above
+    if count == width:
+        if before and len(before[-1].cells) == width and _has_units(names.cells, before[-1]):
+            titles = before.pop()
+            return list(map(_join_unit, titles.cells, names.cells)), before
+        return names.cells, before
+    if count > 1 and abs(count - width) == 1:
+        # R writes no name above the names of rows, and some programs end each row with a separator.
+        if count > width or usual[-1] == "-":
+            return names.cells, before
+        if not before and usual[0] != "t":
+            return ["", *names.cells], before
+    return (), above
 
 
-def _leave_out_settings(line: _Line, usual: str) -> _Line:
-    """Take a line above a table; return it without the numbers that are settings, such as a sampling period.
+def _leave_out_settings(row: Row, usual: str) -> Row:
+    """Take a row above a table; return it without the numbers that are settings, such as a sampling period.
 
     These are the numbers above columns that are empty in the table. Empty cells beyond the width of the table are left
     out, too.
 
     Args:
-        line: The line.
+        row: The row.
         usual: The kinds of the table's typical rows.
     """
     width = len(usual)
-    if len(line.kinds) < width or set(line.kinds[width:]) - {"-"}:
-        return line
-    triples = zip(line.cells, line.kinds, usual, strict=False)
+    if len(row.cells) < width or set(row.kinds[width:]) - {"-"}:
+        return row
+    triples = zip(row.cells, row.kinds, usual, strict=False)
     cells = ["" if (kind, below) == ("n", "-") else cell for cell, kind, below in triples]
-    return line._replace(cells=cells, kinds=parse_kinds(cells))
+    return row._replace(cells=cells)
 
 
 def _join_unit(name: str, unit: str) -> str:
@@ -486,24 +424,19 @@ def _join_unit(name: str, unit: str) -> str:
     return name if has_unit else f"{name} [{unit}]"
 
 
-def _has_gaps(line: _Line, names: _Line) -> bool:
-    """Return whether a line below the names of columns has words under some of them, and empty cells under the others.
+def _has_gaps(row: Row, names: Row) -> bool:
+    """Return whether a row below the names of columns has words under some of them, and empty cells under the others.
 
     Such words may say how a column was averaged. Units do not count.
     """
-    are_names = len(names.kinds) == len(line.kinds) and set(names.kinds) == {"w"}
-    return are_names and set(line.kinds) == {"w", "-"} and not _has_units(line.cells, names)
+    are_names = len(names.cells) == len(row.cells) and set(names.kinds) == {"w"}
+    return are_names and set(row.kinds) == {"w", "-"} and not _has_units(row.cells, names)
 
 
-def _has_units(cells: Sequence[str], names: _Line) -> bool:
+def _has_units(cells: Sequence[str], names: Row) -> bool:
     units = [cell.strip(" ()[]").lower() for cell in cells]
     are_units = all(is_unit(unit) or unit in UNIT_WORDS or unit in "-1" for unit in units)
     return is_words(names.kinds) and any(units) and are_units
-
-
-def _has_names(rows: Sequence[_Line]) -> bool:
-    """Return whether the first of some rows has the names of the columns, although it looks like the rows below it."""
-    return not has_numbers(rows[0].kinds)
 
 
 def _number_columns(cells: Sequence[str], notes: Notes) -> list[str]:

@@ -224,7 +224,7 @@ class CsvReader:
         long = []
         others = []
         lines = list(enumerate(block.text.split("\n"), block.first_row))
-        for row, cells, _ in split_rows(lines, self._separator, width):
+        for row, cells in split_rows(lines, self._separator, width):
             if len(cells) < width:
                 if has_numbers(self._heading.kinds) and not has_numbers(parse_kinds(cells)):
                     others.append(row)
