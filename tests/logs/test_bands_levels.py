@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pyarrow as pa
 import pytest
@@ -15,10 +13,9 @@ from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.logs.bands import (
     CUT_OFF,
     NO_EDGE,
+    Band,
     BandReport,
     build_band_report,
-    describe_levels,
-    describe_width,
 )
 from tuisim.logs.columns import guess_columns
 from tuisim.logs.levels import (
@@ -94,7 +91,7 @@ def test_bands_have_the_places_and_widths_that_the_robot_drove_over() -> None:
     assert (middle.start_s, middle.stop_s, middle.samples) == (0.6, 1.5, 10)
     assert (middle.start_mm, middle.stop_mm, middle.width_mm) == (60.0, 150.0, 108.75)
     assert [band.cut_off for band in report.bands] == [True, False, True]
-    assert [describe_width(band) for band in report.bands] == [CUT_OFF, "109", CUT_OFF]
+    assert [band.describe_width() for band in report.bands] == [CUT_OFF, "109", CUT_OFF]
     assert (middle.first_row, middle.last_row) == (6, 15)
     assert (report.transitions, report.total) == (1, 21)
 
@@ -106,10 +103,8 @@ def test_a_band_between_others_without_a_width_says_why() -> None:
 
     report = build_band_report(Log("log", table, guess_columns(table)), "Light")
 
-    assert [describe_width(band) for band in report.bands] == [CUT_OFF, NO_EDGE, CUT_OFF]
-    assert describe_levels(report).endswith(
-        "; no edge: other samples lie between this band and the next"
-    )
+    assert [band.describe_width() for band in report.bands] == [CUT_OFF, NO_EDGE, CUT_OFF]
+    assert report.describe().endswith("; no edge: other samples lie between this band and the next")
 
 
 def test_levels_measured_by_a_brick_get_the_right_names_of_greys() -> None:
@@ -149,39 +144,55 @@ def test_a_single_sample_at_an_end_of_a_log_counts_as_a_level(
     table = pa.table({"time": np.arange(len(light)) / 10, "Light": light})
     report = build_band_report(Log("log", table, guess_columns(table)), "Light")
     assert [(band.level, band.samples) for band in report.bands] == levels
-    words = describe_levels(report)
+    words = report.describe()
     assert ("0.00 black (one sample)" in words) is any(samples == 1 for _, samples in levels)
     assert (words == "Light: no level: its values stand still nowhere") is (not levels)
 
 
-WITHOUT_PLACES: dict[str, Any] = {"start_mm": np.nan, "width_mm": np.nan, "cut_off": False}
-"""The columns of bands in a log without positions."""
+def bands(*drawn: tuple[str, float, int, float]) -> tuple[Band, ...]:
+    """Return bands with these greys, levels, numbers of samples and spreads, of a log without positions."""
+    nan = float("nan")
+    return tuple(
+        Band(
+            variable="Grey",
+            number=number,
+            start_s=0.0,
+            stop_s=0.0,
+            samples=samples,
+            level=level,
+            spread=spread,
+            strays=0,
+            grey=grey,
+            grey_percent=nan,
+            true_level=level,
+            start_mm=nan,
+            stop_mm=nan,
+            width_mm=nan,
+            cut_off=False,
+            first_row=0,
+            last_row=0,
+        )
+        for number, (grey, level, samples, spread) in enumerate(drawn, 1)
+    )
 
 
 def test_bands_of_the_same_level_are_described_together() -> None:
-    columns: dict[str, Any] = {
-        "number": np.arange(4),
-        "grey": ["grey", "", "grey", "white"],
-        "level": np.array([50.0, 7.0, 56.0, 100.0]),
-        "samples": np.array([10, 4, 20, 1]),
-        "spread": np.zeros(4),
-        **WITHOUT_PLACES,
-    }
-    assert describe_levels(BandReport("Grey", columns, 1, 36)) == (
+    found = bands(
+        ("grey", 50.0, 10, 0.0),
+        ("", 7.0, 4, 0.0),
+        ("grey", 56.0, 20, 0.0),
+        ("white", 100.0, 1, 0.0),
+    )
+    assert BandReport("Grey", found, 36).describe() == (
         "Grey: 3 levels: 54.00 grey (2x), 7.00, 100.00 white (one sample); 1 of 36 samples lies on edges or slopes"
     )
 
 
 def test_noisy_bands_of_nearly_one_level_are_described_as_one() -> None:
-    columns: dict[str, Any] = {
-        "number": np.arange(5),
-        "grey": [""] * 5,
-        "level": np.array([92.08, 17.84, 92.23, 18.10, 95.0]),
-        "samples": np.array([60, 60, 60, 60, 60]),
-        "spread": np.array([0.7, 0.8, 0.75, 0.83, 0.74]),
-        **WITHOUT_PLACES,
-    }
-    words = describe_levels(BandReport("Helligkeit", columns, 0, 300))
+    levels = (92.08, 17.84, 92.23, 18.10, 95.0)
+    spreads = (0.7, 0.8, 0.75, 0.83, 0.74)
+    found = bands(*(("", level, 60, spread) for level, spread in zip(levels, spreads, strict=True)))
+    words = BandReport("Helligkeit", found, 300).describe()
     assert words.startswith("Helligkeit: 3 levels: 92.16 (2x), 17.97 (2x), 95.00; ")
 
 

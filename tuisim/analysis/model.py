@@ -16,7 +16,7 @@ from tuisim.analysis.source import Note, OpenedLog, read_notes, write_notes
 from tuisim.analysis.traces import DISTANCE, TIME, LogTrace, LogTraces, align_series
 from tuisim.base.errors import LogError, among
 from tuisim.engine.runs.arrays import FloatArray
-from tuisim.logs.bands import Band, BandReport, build_band_report, describe_levels
+from tuisim.logs.bands import Band, BandReport, build_band_report
 from tuisim.logs.columns import list_numeric_columns
 from tuisim.logs.derived import (
     RECKONED_COLUMNS,
@@ -65,8 +65,6 @@ class AnalysisModel:
         """Visible time range, None for all."""
         self.alignment = TIME
         self._reports: dict[str, BandReport] = {}
-        self._bands: dict[str, tuple[Band, ...]] = {}
-        """The bands of the reports, by variable."""
         self._reported: tuple[list[BandReport], list[Band]] = ([], [])
         """Cache of the bands of the latest reports."""
         self.events = Events(opened.runs)
@@ -333,11 +331,8 @@ class AnalysisModel:
         """
         for name in names:
             report = build_band_report(self.log, name, search)
-            self._words[name], self._bands[name], self._reports[name] = (
-                describe_levels(report),
-                report.bands,
-                report,
-            )
+            self._words[name] = report.describe()
+            self._reports[name] = report
 
     def list_reports(self) -> list[BandReport]:
         """Return the reports on the bands of the visible variables, one for each variable."""
@@ -355,10 +350,7 @@ class AnalysisModel:
         """Return the bands of the visible variables, without variables in which bands were not searched for yet."""
         reports = self.list_reports()
         if reports != self._reported[0]:
-            self._reported = (
-                reports,
-                [band for report in reports for band in self._bands[report.variable]],
-            )
+            self._reported = reports, [band for report in reports for band in report.bands]
         return self._reported[1]
 
     def find_measured_span(self) -> Limits | None:

@@ -22,7 +22,6 @@ from tuisim.engine.core.tick_record import FLAG_PEN_DOWN
 from tuisim.engine.files import name_of
 from tuisim.engine.protocol import SetNoise, describe_state
 from tuisim.engine.runs.run_folder import StoredRun
-from tuisim.logs.bands import count_samples, describe_width
 from tuisim.logs.export import check_place
 from tuisim.logs.log import Log
 from tuisim.logs.plateaus import Search, find_plateaus
@@ -287,10 +286,10 @@ def _build_band_table(model: AnalysisModel) -> Mapping[str, Any]:
                 f"{band.stop_s:.2f}",
             ),
             *(
-                count_samples(band),
+                band.describe_samples(),
                 f"{band.level:.2f}",
                 f"{band.spread:.2f}",
-                describe_width(band),
+                band.describe_width(),
             ),
         ]
         for band in bands[:MAX_BANDS]

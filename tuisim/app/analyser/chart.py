@@ -141,7 +141,7 @@ class LogChart(LinesPanel):
         spans = {
             report.variable: build_spans(report.bands)
             for report in model.list_reports()
-            if model.alignment == TIME and report.count <= _MAX_BANDS
+            if model.alignment == TIME and len(report.bands) <= _MAX_BANDS
         }
         self._pictures = []
         lines: list[list[Run]] = []

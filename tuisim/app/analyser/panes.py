@@ -37,7 +37,7 @@ from tuisim.app.snapshot import end_label
 from tuisim.base import palette
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import TuisimError
-from tuisim.logs.bands import Band, count_samples, describe_width
+from tuisim.logs.bands import Band
 from tuisim.logs.plateaus import Search, find_plateaus, find_plateaus_in_subprocess
 from tuisim.logs.signals import QUANTILES, format_figure
 from tuisim.logs.table import FAST_ROWS
@@ -124,8 +124,8 @@ def _format_band(band: Band, *, is_moved: bool) -> Cells:
         band.grey or "–",
         f"{band.start_s:.2f}",
         f"{band.stop_s:.2f}",
-        count_samples(band),
-        describe_width(band),
+        band.describe_samples(),
+        band.describe_width(),
         f"{band.spread:.2f}",
     )
 

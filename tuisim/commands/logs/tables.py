@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, fields, replace
 from math import isnan
+from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -36,14 +37,7 @@ from tuisim.engine.core.conditions import Operator
 from tuisim.engine.runs.arrays import FloatArray
 from tuisim.engine.runs.command_events import CommandIndex
 from tuisim.logs import signals
-from tuisim.logs.bands import (
-    BandReport,
-    Column,
-    build_band_report,
-    describe_levels,
-    describe_width,
-    unpack_column,
-)
+from tuisim.logs.bands import Band, BandReport, build_band_report
 from tuisim.logs.csv_cells import write_csv
 from tuisim.logs.derived import build_reckoned_series
 from tuisim.logs.export import build_table_metadata, check_target, export_frame, export_log
@@ -89,52 +83,37 @@ def summary(arguments: Arguments) -> int:
 
 def bands(arguments: Arguments) -> int:
     """Print the plateaus of every variable: level, name, times, width."""
-    titles: list[str] = []
     reports: list[BandReport] = []
-    for title, report in _iterate_reports(arguments):
-        titles += [title] * report.count
-        reports.append(report)
+    titles: list[str] = []
+    for log in open_sources(arguments):
+        for name in choose_names(log, arguments):
+            reports.append(build_band_report(log, name))
+            titles += [log.title] * len(reports[-1].bands)
+    found = [band for report in reports for band in report.bands]
     formats = {
         "variable": "",
         "number": "",
         "start_s": ".2f",
         "stop_s": ".2f",
         "samples": "",
-        **({"strays": ""} if any(np.any(report.columns["strays"]) for report in reports) else {}),
+        **({"strays": ""} if any(band.strays for band in found) else {}),
         "level": ".2f",
         **({"true_level": ".2f"} if any(report.has_true_levels for report in reports) else {}),
         "spread": ".2f",
         "grey": "",
         "width_mm": "",
     }
-    columns = {
-        name: _join_columns([report.columns[name] for report in reports])
-        for name in reports[0].columns
+    columns: dict[str, Sequence[Any]] = {
+        field.name: list(map(attrgetter(field.name), found)) for field in fields(Band)
     }
     is_table = not arguments.json and not arguments.out
     if is_table:
-        columns["width_mm"] = [
-            f"{describe_width(band):>8}" for report in reports for band in report.bands
-        ]
+        columns["width_mm"] = [f"{band.describe_width():>8}" for band in found]
     show_columns({"log": titles, **columns}, arguments, formats)
     if is_table:
         for report in reports:
-            echo_wrapped(describe_levels(report))
+            echo_wrapped(report.describe())
     return 0
-
-
-def _iterate_reports(arguments: Arguments) -> Iterator[tuple[str, BandReport]]:
-    """Yield the bands of every variable, with the title of its log."""
-    for log in open_sources(arguments):
-        for name in choose_names(log, arguments):
-            yield log.title, build_band_report(log, name)
-
-
-def _join_columns(columns: Sequence[Column]) -> Column:
-    """Return one column with the values of all given columns, those of the first column first."""
-    if isinstance(columns[0], np.ndarray):
-        return np.concatenate(columns)
-    return [item for column in columns for item in column]
 
 
 def events(arguments: Arguments) -> int:
@@ -411,7 +390,7 @@ def show_rows(
 
 
 def show_columns(
-    columns: Mapping[str, Column], arguments: Arguments, formats: Mapping[str, str]
+    columns: Mapping[str, Sequence[Any]], arguments: Arguments, formats: Mapping[str, str]
 ) -> None:
     """Print or write columns of the same length.
 
@@ -421,13 +400,13 @@ def show_columns(
         formats: Columns of the table, and their format specs, such as `.2f`, or `_FIGURE`.
     """
     if not any(map(len, columns.values())):
-        columns = dict.fromkeys(formats, np.empty(0, object))
+        columns = dict.fromkeys(formats, ())
     if arguments.out:
         import pandas as pd
 
         write_frame(pd.DataFrame(columns), arguments)
     elif arguments.json:
-        rows = zip(*map(unpack_column, columns.values()), strict=True)
+        rows = zip(*columns.values(), strict=True)
         echo_json_list(replace_infinite(dict(zip(columns, row, strict=True))) for row in rows)
     else:
         heads = [name.upper().replace("_", " ") for name in formats]
@@ -462,18 +441,16 @@ def write_frame(frame: pd.DataFrame, arguments: Arguments) -> None:
     echo_written(arguments.out)
 
 
-def _are_numbers(column: Column) -> bool:
-    if isinstance(column, np.ndarray):
-        return len(column) > 0
+def _are_numbers(column: Sequence[Any]) -> bool:
     return len(column) > 0 and all(isinstance(item, int | float) for item in column)
 
 
-def _format_cells(column: Column, format_spec: str) -> list[str]:
+def _format_cells(column: Sequence[Any], format_spec: str) -> list[str]:
     """Return the texts of a column's cells; a missing number is an empty text."""
     if not format_spec:
-        return list(map(str, unpack_column(column)))
+        return list(map(str, column))
     cells = []
-    for item in unpack_column(column):
+    for item in column:
         if not isinstance(item, float):
             cells.append(str(item))
         elif isnan(item):
