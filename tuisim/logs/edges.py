@@ -11,7 +11,6 @@ import numpy as np
 
 from tuisim.engine.runs.arrays import IntArray
 from tuisim.logs.pieces import (
-    CERTAINTY,
     NEAR_SAMPLES,
     STRAY_SAMPLES,
     BoolArray,
@@ -21,7 +20,7 @@ from tuisim.logs.pieces import (
     find_strays,
     group_by_length,
 )
-from tuisim.logs.stillness import PART_OF_SLOPE, PlateauArray, go_one_way, read_spans
+from tuisim.logs.stillness import PART_OF_SLOPE, PlateauArray, read_spans
 
 EDGE_SAMPLES = 3
 """Most samples of an edge between two plateaus, however short the passage."""
@@ -59,18 +58,6 @@ def find_edges(plateaus: PlateauArray) -> BoolArray:
     lengths[:1] = lengths[-1:] = lengths.max(initial=0)
     edges[inner] = is_step & (lengths[inner] < np.minimum(lengths[before], lengths[after]))
     return edges
-
-
-def find_ramps(signal: Signal, plateaus: PlateauArray) -> BoolArray:
-    """Return for each plateau whether it is short, and clearly rises or falls from each sample to the next."""
-    ramps = count_samples(read_spans(plateaus)) <= EDGE_SAMPLES + 1
-    short = np.flatnonzero(ramps)
-    for some, part in group_by_length(signal.values, read_spans(plateaus[short])):
-        steps = np.abs(np.diff(part, axis=1))
-        ramps[short[some]] = np.logical_and(
-            go_one_way(part), (steps > CERTAINTY * signal.sigma).all(axis=1)
-        )
-    return ramps
 
 
 def find_hidden_edges(

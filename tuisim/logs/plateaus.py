@@ -31,7 +31,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from tuisim.base.errors import LogError
 from tuisim.engine.runs.arrays import FloatArray, IntArray, number_members
 from tuisim.logs.curves import find_curves
-from tuisim.logs.edges import EDGE_SAMPLES, find_edges, find_hidden_edges, find_ramps
+from tuisim.logs.edges import EDGE_SAMPLES, find_edges, find_hidden_edges
 from tuisim.logs.pieces import (
     CERTAINTY,
     FAR,
@@ -246,11 +246,10 @@ def _join_pieces(signal: Signal, pieces: Pieces, *, has_strays: bool) -> Pieces:
 
 
 def _drop_short(signal: Signal, plateaus: PlateauArray, min_samples: int) -> PlateauArray:
-    """Return plateaus without ramps, without steps on edges, and without plateaus of fewer than `min_samples` samples.
+    """Return plateaus without steps on edges, and without plateaus of fewer than `min_samples` samples.
 
     A short plateau at an end of the log is kept, as the log may have cut it off.
     """
-    plateaus = plateaus[~find_ramps(signal, plateaus)]
     plateaus = plateaus[~find_edges(plateaus)]
     at_an_end = (plateaus["start"] == 0) | (plateaus["stop"] == len(signal.values))
     is_long = count_samples(read_spans(plateaus)) >= min_samples

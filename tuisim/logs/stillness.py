@@ -25,10 +25,11 @@ _STILL_OF_RANGE, _STILL_OF_VALUE = 0.02, 0.02
 _STILL_NOISES = 3.0
 """A piece whose spread is below this multiple of the noise stands still."""
 
-_WANDERS = 0.5
-_SHORT_WANDERS = 0.9
 _SHORT_SAMPLES = 8
-"""A piece, and one of fewer samples, wanders if neighbours differ by less than this fraction of its variance tells.
+"""A piece of fewer samples moves if each is larger, or each smaller, than the one before."""
+
+_WANDERS = 0.5
+"""A piece wanders if neighbours differ by less than this fraction of its variance tells.
 
 This is half the ratio of von Neumann (1941), which is about 1 for samples that do not depend on each other. Its
 standard deviation is 0.1 for 100 samples.
@@ -133,13 +134,6 @@ def _measure_levels(plateaus: PlateauArray, part: FloatArray, keep: BoolArray) -
     return plateaus
 
 
-def go_one_way(part: FloatArray) -> BoolArray:
-    """Return for each row of samples, shape (m, length), whether it rises, or falls, from each sample to the next."""
-    steps = np.diff(part, axis=1)
-    one_way: BoolArray = np.logical_or((steps > 0.0).all(axis=1), (steps < 0.0).all(axis=1))
-    return one_way
-
-
 def find_moving(signal: Signal, plateaus: PlateauArray) -> BoolArray:
     """Return for each plateau whether it has no level.
 
@@ -176,10 +170,11 @@ def _find_wandering(part: FloatArray, spread: FloatArray, sigma: float) -> BoolA
 
     A row of noise has large differences between neighbours. In a row that wanders, they are small for the row's spread.
     """
-    is_short = part.shape[1] < _SHORT_SAMPLES
-    max_fraction = _SHORT_WANDERS if is_short else _WANDERS
-    wanders: BoolArray = _compare_neighbours(part, sigma) < max_fraction * spread**2
-    return wanders | go_one_way(part) if is_short else wanders
+    wanders: BoolArray = _compare_neighbours(part, sigma) < _WANDERS * spread**2
+    if part.shape[1] < _SHORT_SAMPLES:
+        steps = np.diff(part, axis=1)
+        wanders |= (steps > 0.0).all(axis=1) | (steps < 0.0).all(axis=1)
+    return wanders
 
 
 def _find_swinging(part: FloatArray) -> BoolArray:
