@@ -19,10 +19,10 @@ from tuisim.logs.bands import (
 )
 from tuisim.logs.columns import guess_columns
 from tuisim.logs.levels import (
+    _has_light_levels,
     find_light,
     find_light_scale,
     find_nearest_greys,
-    has_light_levels,
     list_greys,
     measure_levels,
     undo_clamping,
@@ -110,10 +110,9 @@ def test_a_band_between_others_without_a_width_says_why() -> None:
 def test_levels_measured_by_a_brick_get_the_right_names_of_greys() -> None:
     light = find_light(RunSpec(RobotSpec(), WorldSpec(), EV3))
     values = np.repeat([85.0, 74.0, 70.0, 45.0, 5.0], 5)
-    found = measure_levels(values, light)
-    names = [grey.name if grey else "" for grey in found.greys]
-    assert names == ["white", "pale grey", "light grey", "grey", "black"]
-    noisy = measure_levels(values, light._replace(noise=20))
+    found = measure_levels("Light", values, light)
+    assert list(found.greys) == ["white", "pale grey", "light grey", "grey", "black"]
+    noisy = measure_levels("Light", values, light._replace(noise=20))
     # Noise makes white darker, and black lighter.
     assert noisy.true_level[0] >= 85.0 and noisy.true_level[-1] <= 5.1
     assert noisy.true_level[3] == pytest.approx(45.0)
@@ -209,4 +208,4 @@ def test_noisy_bands_of_nearly_one_level_are_described_as_one() -> None:
 def test_codes_of_colours_get_no_names_of_greys(
     name: str, values: list[float], is_light: bool
 ) -> None:
-    assert has_light_levels(name, np.array(values)) is is_light
+    assert _has_light_levels(name, np.array(values)) is is_light

@@ -10,7 +10,7 @@ from tests.cases import cases, for_each
 from tuisim.engine.runs.arrays import FloatArray
 from tuisim.logs.bands import compute_driven_mm, measure_widths
 from tuisim.logs.columns import Layout
-from tuisim.logs.levels import Levels, measure_levels
+from tuisim.logs.levels import Levels, Light, measure_levels
 from tuisim.logs.log import Log
 
 GREYS = (100.0, 86.0, 100.0, 50.0, 0.0, 83.0)
@@ -31,7 +31,7 @@ def drawn_levels(places_mm: FloatArray, edges_mm: FloatArray, spot_mm: float) ->
     stop = np.searchsorted(places_mm, np.append(edges_mm - spot_mm / 2.0, np.inf))
     level = np.array(GREYS)
     none = np.zeros(len(GREYS))
-    return Levels(start, stop, level, level, none, none.astype(np.int64), (None,) * len(GREYS))
+    return Levels(start, stop, level, level, none, none.astype(np.int64), ("",) * len(GREYS), none)
 
 
 def test_the_distance_driven_is_summed_along_the_path() -> None:
@@ -66,7 +66,7 @@ def test_widths_are_right_also_when_levels_are_estimated_from_the_samples(
     edges_mm = 60.3 + width_mm * np.arange(len(GREYS) - 1.0)
     places_mm = np.arange(0.0, edges_mm[-1] + 60.0, period_mm)
     values: FloatArray = np.round(2.55 * read_mat(places_mm, edges_mm, spot_mm))
-    levels = measure_levels(values)
+    levels = measure_levels("Light", values, Light())
     assert len(levels.start) == len(GREYS)
     widths_mm = measure_widths(values, places_mm, levels)
     bound_mm = max(period_mm - spot_mm / 2.0, 0.05 * spot_mm)
@@ -83,7 +83,7 @@ def test_a_slow_robot_finds_no_band_on_an_edge(
     places_mm = np.arange(0.0, edges_mm[-1] + 60.0, period_mm)
     exact = 2.55 * read_mat(places_mm, edges_mm, 20.0)
     noisy = np.round(exact + np.random.default_rng(1).normal(0.0, noise, len(exact))) / 2.55
-    levels = measure_levels(np.repeat(noisy, repeats))
+    levels = measure_levels("Light", np.repeat(noisy, repeats), Light())
     assert levels.level == pytest.approx(GREYS, abs=0.3)
 
 
@@ -110,5 +110,6 @@ def test_measured_widths_of_simple_steps_are_as_expected(
     values: list[float], widths: list[float]
 ) -> None:
     samples = np.array(values, np.float64)
-    measured = measure_widths(samples, np.arange(len(values), dtype=float), measure_levels(samples))
+    levels = measure_levels("Light", samples, Light())
+    measured = measure_widths(samples, np.arange(len(values), dtype=float), levels)
     assert measured == pytest.approx(widths, nan_ok=True)

@@ -133,13 +133,6 @@ def test_a_derived_variable_is_replaced_removed_and_kept_when_the_log_grows() ->
     assert model.selected == "wave" and len(model.rows) == 100
 
 
-def test_columns_of_another_meaning_get_no_dead_reckoning() -> None:
-    model = model_of(wide_log(100))
-    model.derive("v = wave + 1")
-    other = model.log.replace_layout(model.log.layout)
-    assert other.names == ("wave",) and other.table.column_names == ["time", "wave"]
-
-
 class TestReckoning:
     def test_dead_reckoning_drives_straight_and_turns(self) -> None:
         robot = RobotSpec()

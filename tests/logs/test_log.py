@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +9,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from tests.cases import cases
+from tuisim.logs.choices import ReadChoices
 from tuisim.logs.columns import guess_columns
 from tuisim.logs.log import Log
 from tuisim.logs.reader import open_log
@@ -95,7 +95,7 @@ def test_infinite_numbers_in_a_log_raise_no_warning() -> None:
 
 def test_a_layout_whose_time_is_missing_in_a_row_leaves_that_row_out() -> None:
     log = log_of(row=[0, 1, 2], at=[float("inf"), 7.0, None], a=[1.0, 2.0, 3.0])
-    timed = log.replace_layout(replace(log.layout, time="at", values=("a",)))
+    timed = log.choose(ReadChoices(time="at", value=("a",)))
     assert timed.series("a").time_s.tolist() == [7.0]
     assert timed.series("a").values.tolist() == [2.0]
     assert timed.notes == (
@@ -105,6 +105,6 @@ def test_a_layout_whose_time_is_missing_in_a_row_leaves_that_row_out() -> None:
 
 def test_the_rows_are_counted_if_none_has_a_time() -> None:
     log = log_of(at=pa.nulls(2, pa.float64()), a=[1.0, 2.0])
-    timed = log.replace_layout(replace(log.layout, time="at", values=("a",)))
+    timed = log.choose(ReadChoices(time="at", value=("a",)))
     assert timed.series("a").time_s.tolist() == [0.0, 1.0]
     assert timed.notes == ("no time in 'at' can be read: row numbers are used",)

@@ -17,9 +17,10 @@ from tuisim.engine.runs.records import OutputRow, Stream
 from tuisim.engine.runs.samples import Sample
 from tuisim.logs.export import EXPORTERS, export_frame
 from tuisim.logs.frames import read_log
-from tuisim.logs.levels import measure_levels
-from tuisim.logs.magnitude import MAX_DRAWN, find_scale, limit_drawn
+from tuisim.logs.levels import Light, measure_levels
+from tuisim.logs.magnitude import find_scale
 from tuisim.logs.signals import compute_summary
+from tuisim.pictures.charts.axes import MAX_DRAWN, limit_drawn
 from tuisim.pictures.charts.canvas import draw_xy_chart
 from tuisim.pictures.charts.files import CHART_FORMATS
 from tuisim.pictures.charts.sample_chart import build_sample_chart
@@ -57,7 +58,7 @@ def test_mean_and_spread_of_two_extreme_numbers_are_exact(low: float, high: floa
 
 @pytest.mark.parametrize("values", ODD, ids=lambda values: f"{values[0]:g} {values[-1]:g}")
 def test_levels_of_huge_numbers_are_found(values: Sequence[float]) -> None:
-    found = measure_levels(np.tile(values, 10 if len(values) == 2 else 1))
+    found = measure_levels("Light", np.tile(values, 10 if len(values) == 2 else 1), Light())
     assert all(value in found.level for value in values) or len(values) == 2
     assert np.isfinite(found.level).all() and np.isfinite(found.spread).all()
 
@@ -125,7 +126,7 @@ def test_statistics_of_any_numbers_are_finite_and_ordered(values: Sequence[float
         if found.count:
             assert found.min <= found.mean <= found.max and found.std >= 0.0
             assert list(found.quantiles) == sorted(found.quantiles)
-    levels = measure_levels(samples)
+    levels = measure_levels("Light", samples, Light())
     assert np.isfinite(levels.level).all()
     for of in compute_statistics(_printed(values)).values():
         assert of.min <= of.mean <= of.max and of.std >= 0.0

@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose
 
 from tuisim.analysis.events import find_crossings
 from tuisim.base.errors import LogError
+from tuisim.logs.log import Series
 from tuisim.logs.signals import (
     Between,
     compute_derivative,
@@ -18,7 +19,6 @@ from tuisim.logs.signals import (
     compute_summary,
     resample,
     sample_signal,
-    sample_unsorted_signal,
 )
 
 NAN = float("nan")
@@ -130,7 +130,8 @@ class TestOrder:
         assert_allclose(resample(*SPARSE, 1)[1], [1, 1, 3, 3, 7, 7])
         moments_s, _ = resample(*SPARSE, 1)
         assert_allclose(
-            sample_unsorted_signal(*SPARSE, moments_s, Between.LINEAR), [1, 2, 3, 5, 7, 7]
+            Series("a", *SPARSE, np.arange(len(SPARSE[0]))).sample(moments_s, Between.LINEAR),
+            [1, 2, 3, 5, 7, 7],
         )
 
     def test_derivative_integral_resampling_and_crossings_allow_times_that_go_back(self) -> None:

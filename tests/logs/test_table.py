@@ -10,16 +10,14 @@ from tests.app.analyser.logs import long_log, model_of
 from tuisim.analysis.model import AnalysisModel
 from tuisim.base.errors import LogError
 from tuisim.logs import table as rows_module
-from tuisim.logs.table import TableTask, parse_conditions
+from tuisim.logs.table import TableTask
 
 
 def test_a_search_of_a_table_wraps_around(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(rows_module, "_STRETCH", 3)
     model = model_of(long_log())
     rows = model.rows
-    rows.view = rows.build_filtered_view(
-        tuple(parse_conditions("variable == Colour", rows.columns))
-    )
+    rows.view = rows.build_filtered_view(rows.parse_conditions("variable == Colour"))
     rows.view = rows.build_sorted_view("value", False)
     values = [rows.text(rows.row(place), "value") for place in range(len(rows))]
     assert values == [str(value) for value in range(0, 100, 10)]
@@ -67,9 +65,7 @@ def values(model: AnalysisModel) -> list[float]:
 )
 def test_a_filter_shows_the_rows_that_meet_all_conditions(text: str, found: list[float]) -> None:
     model = model_of(long_log())
-    model.rows.view = model.rows.build_filtered_view(
-        tuple(parse_conditions(text, model.rows.columns))
-    )
+    model.rows.view = model.rows.build_filtered_view(model.rows.parse_conditions(text))
     assert values(model) == found
 
 
@@ -77,16 +73,14 @@ def test_a_filter_shows_the_rows_that_meet_all_conditions(text: str, found: list
 def test_a_faulty_filter_condition_is_refused_and_keeps_all_rows(text: str) -> None:
     model = model_of(long_log())
     with pytest.raises(LogError):
-        model.rows.view = model.rows.build_filtered_view(
-            tuple(parse_conditions(text, model.rows.columns))
-        )
+        model.rows.view = model.rows.build_filtered_view(model.rows.parse_conditions(text))
     assert len(model.rows) == 20
 
 
 def test_a_filtered_table_can_be_sorted() -> None:
     model = model_of(long_log())
     model.rows.view = model.rows.build_filtered_view(
-        tuple(parse_conditions("variable == Colour", model.rows.columns))
+        model.rows.parse_conditions("variable == Colour")
     )
     model.rows.view = model.rows.build_sorted_view("value", False)
     assert values(model) == [float(10 * at) for at in range(10)]

@@ -189,7 +189,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "a span of an axis overflows",
-        "logs/magnitude.py",
+        "pictures/charts/axes.py",
         "return np.where(np.isfinite(numbers), numbers.clip(-MAX_DRAWN, MAX_DRAWN), numbers)",
         "return numbers",
         "numbers",

@@ -17,7 +17,6 @@ from tuisim.analysis.traces import DISTANCE, TIME, LogTrace, LogTraces, align_se
 from tuisim.base.errors import LogError, among
 from tuisim.engine.runs.arrays import FloatArray
 from tuisim.logs.bands import Band, BandReport, build_band_report
-from tuisim.logs.columns import list_numeric_columns
 from tuisim.logs.derived import (
     RECKONED_COLUMNS,
     build_reckoned_series,
@@ -26,7 +25,7 @@ from tuisim.logs.derived import (
     parse_definition,
 )
 from tuisim.logs.plateaus import Search, find_plateaus
-from tuisim.logs.signals import Summary, compute_summary, sample_unsorted_signal
+from tuisim.logs.signals import Summary, compute_summary
 from tuisim.logs.table import Rows
 from tuisim.logs.units import drop_run
 from tuisim.pictures.charts.axes import Limits
@@ -160,8 +159,8 @@ class AnalysisModel:
             other = self.traces.find_trace(name).series
             if other is series:
                 return other.values
-            return sample_unsorted_signal(other.time_s, other.values, series.time_s)
-        if name not in (numbers := list_numeric_columns(self.log.table.schema)):
+            return other.sample(series.time_s)
+        if name not in (numbers := self.log.numeric_columns):
             known = dict.fromkeys((*self.log.names, *numbers))
             raise LogError(f"no variable {name!r}", among(name, known), file=self.log.title)
         return self.log.numbers(name)[series.rows]

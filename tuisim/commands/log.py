@@ -12,9 +12,8 @@ from typing import cast
 from tuisim.base.data_class import dataclass
 from tuisim.commands.echo import Progress
 from tuisim.commands.listings import COLUMN
-from tuisim.logs.choices import DECIMAL_SIGNS, SIGNS
+from tuisim.logs.choices import WORDS
 from tuisim.logs.export import EXPORTERS, LISTED
-from tuisim.logs.units import SECONDS
 from tuisim.settings.command_line import (
     Arguments,
     Command,
@@ -42,7 +41,7 @@ COLUMNS = (
     option("--time", metavar="COLUMN", group="Columns", help="Time column; '' uses row numbers."),
     choice(
         "--unit",
-        tuple(SECONDS),
+        WORDS["unit"],
         group="Columns",
         callback=_replace_none,
         help="Unit of the time column, if its name does not give it.",
@@ -79,14 +78,14 @@ COLUMNS = (
     ),
     choice(
         "--separator",
-        tuple(SIGNS),
+        WORDS["separator"],
         group="Text",
         callback=_replace_none,
         help="Separator between the cells.",
     ),
     choice(
         "--decimal",
-        DECIMAL_SIGNS,
+        WORDS["decimal"],
         group="Text",
         callback=_replace_none,
         help="Decimal sign.",

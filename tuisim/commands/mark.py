@@ -43,7 +43,7 @@ from tuisim.commands.run_options import (
 )
 from tuisim.engine.core.values import Whole
 from tuisim.engine.runs.child.isolation import MOST_BYTES, check_isolation
-from tuisim.logs.export import ALLOWED, EXPORTERS, check_place, check_target
+from tuisim.logs.export import EXPORTERS, check_place, check_target
 from tuisim.settings.command_line import Arguments, WordType, argument, command, option
 from tuisim.settings.options import APP, PANEL, parse
 from tuisim.settings.shared_options import build_shared_options
@@ -110,7 +110,8 @@ _OPTIONS = (
         metavar="FILE",
         type=WordType(),
         group=_RESULTS,
-        help=f"Write the marks: .html is a page with a report of each stored run, else {ALLOWED}; may be repeated.",
+        help="Write the marks: .html is a page with a report of each stored run, else "
+        f"{', '.join(EXPORTERS)}; may be repeated.",
     ),
     option(
         "--moodle",
@@ -337,7 +338,7 @@ def _check(arguments: Arguments, task: GoalsFile) -> None:
         elif target.suffix.lower() in EXPORTERS:
             check_target(target)
         else:
-            allowed = f"a file ends in .html, {ALLOWED}"
+            allowed = f"a file ends in .html, {', '.join(EXPORTERS)}"
             raise ExportError(f"cannot write {target}: unknown format {target.suffix!r}", allowed)
     gradebooks = _list_gradebooks(arguments).values()
     for target in gradebooks:

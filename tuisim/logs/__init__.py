@@ -3,7 +3,6 @@
 __all__ = [
     "bands",
     "choices",
-    "columns",
     "csv_cells",
     "derived",
     "export",

@@ -15,9 +15,8 @@ import numpy as np
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import counted
-from tuisim.engine.runs.arrays import FloatArray, number_members
-from tuisim.logs.columns import list_numeric_columns
-from tuisim.logs.levels import Levels, Light, find_light, has_light_levels, measure_levels
+from tuisim.engine.runs.arrays import FloatArray, IntArray, number_members
+from tuisim.logs.levels import Levels, find_light, measure_levels
 from tuisim.logs.plateaus import Search, find_plateaus
 
 if TYPE_CHECKING:
@@ -176,10 +175,9 @@ def build_band_report(log: Log, name: str, search: Search = find_plateaus) -> Ba
         LogError: the log has no variable of that name.
     """
     series = log.series(name)
-    spec = log.find_spec(max(series.run - 1, 0))
-    light = find_light(spec) if spec else Light()
+    light = find_light(log.find_spec(max(series.run - 1, 0)))
     values = series.values
-    levels = measure_levels(values, light if has_light_levels(name, values) else None, search)
+    levels = measure_levels(name, values, light, search)
     finite = np.append(0, np.cumsum(np.isfinite(values)))
     first, last = levels.start, levels.stop - 1
     driven_mm = compute_driven_mm(log, series)
@@ -187,7 +185,6 @@ def build_band_report(log: Log, name: str, search: Search = find_plateaus) -> Ba
     if driven_mm is not None:
         start_mm, stop_mm = driven_mm[first], driven_mm[last]
         width_mm = measure_widths(values, driven_mm, levels)
-    greys_percent = light.seen(np.array([grey.percent if grey else NAN for grey in levels.greys]))
     columns = (
         np.arange(1, len(first) + 1),
         series.time_s[first],
@@ -196,8 +193,8 @@ def build_band_report(log: Log, name: str, search: Search = find_plateaus) -> Ba
         levels.level,
         levels.spread,
         levels.strays,
-        np.array([grey.name if grey else "" for grey in levels.greys], object),
-        greys_percent,
+        np.array(levels.greys, object),
+        levels.grey_percent,
         levels.true_level,
         start_mm,
         stop_mm,
@@ -213,7 +210,7 @@ def build_band_report(log: Log, name: str, search: Search = find_plateaus) -> Ba
 
 def compute_driven_mm(log: Log, series: Series) -> FloatArray | None:
     """Return the distance driven at each sample in mm, shape (n,); None if the log has no positions."""
-    if not {"x_mm", "y_mm"} <= set(list_numeric_columns(log.table.schema)) or not len(series.rows):
+    if not {"x_mm", "y_mm"} <= set(log.numeric_columns) or not len(series.rows):
         return None
     x_mm, y_mm = (log.pick_numbers(name, series.rows) for name in ("x_mm", "y_mm"))
     if not (np.isfinite(x_mm).all() and np.isfinite(y_mm).all()):
@@ -252,19 +249,33 @@ def measure_widths(values: FloatArray, driven_mm: FloatArray, levels: Levels) ->
     reach = _FAR_OF_STEP * np.abs(np.diff(levels.true_level)) + _FAR_OF_SPREAD * np.maximum(
         levels.spread[:-1], levels.spread[1:]
     )
-    apart = values[rows[row]] - middles[edge]
     is_unknown = (places_mm[first] - places_mm[last] > _MAX_EDGE_MM) & (
         first - last > _MAX_EDGE_STEPS
     )
+    apart = values[rows[row]] - middles[edge]
     is_unknown[edge[np.abs(apart) > reach[edge]]] = True
-    # With noise, samples may pass the middle several times: the edge is midway between the first and the last time.
     apart_next = values[rows[row + 1]] - middles[edge]
     passing = np.flatnonzero((apart < 0.0) != (apart_next < 0.0))
     edge, row = edge[passing], row[passing]
     part = apart[passing] / (apart[passing] - apart_next[passing])
     passed_mm = places_mm[row] + part * (places_mm[row + 1] - places_mm[row])
-    first_mm, last_mm = np.full(len(middles), np.inf), np.full(len(middles), -np.inf)
-    np.minimum.at(first_mm, edge, passed_mm)
-    np.maximum.at(last_mm, edge, passed_mm)
-    edges_mm = np.where(is_unknown, NAN, (first_mm + last_mm) / 2.0)
+    edges_mm = np.where(is_unknown, NAN, _find_middles(edge, passed_mm, len(middles)))
     return np.diff(edges_mm, prepend=NAN, append=NAN)[: len(levels.start)]
+
+
+def _find_middles(edge: IntArray, places_mm: FloatArray, count: int) -> FloatArray:
+    """Return for each of `count` edges the position midway between its first and its last place, shape (count,).
+
+    With noise, samples pass the middle between two levels several times. An edge without any place has NaN.
+
+    Args:
+        edge: For each place, the index of its edge.
+        places_mm: The places.
+        count: The number of edges.
+    """
+    first_mm = np.full(count, np.inf)
+    last_mm = np.full(count, -np.inf)
+    np.minimum.at(first_mm, edge, places_mm)
+    np.maximum.at(last_mm, edge, places_mm)
+    middles_mm: FloatArray = (first_mm + last_mm) / 2.0
+    return middles_mm

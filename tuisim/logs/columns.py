@@ -278,6 +278,13 @@ class Layout:
     sure: bool = True
     """Whether the names of the columns are clear; otherwise the user should be asked."""
 
+    def describe_time(self) -> str:
+        """Return a sentence that says which column is the time."""
+        if self.time in (ROW, "row"):
+            return "no time column: row numbers from 0 are used"
+        unit = UNIT_NAMES.get(self.unit_s, f"{self.unit_s:g} s")
+        return f"time is the column {self.time!r}, in {unit}{' since 1970' if self.since_first else ''}"
+
 
 def is_numeric(kind: pa.DataType) -> bool:
     """Return whether an Arrow type is numeric."""
@@ -428,14 +435,6 @@ def describe_guessed_times(table: pa.Table, layout: Layout) -> str:
         return ""
     parts = describe_guess(table.column(layout.time).cast(pa.string()))
     return f"the dates or times in {layout.time!r} are read as {parts}" if parts else ""
-
-
-def time_in_words(layout: Layout) -> str:
-    """Return a sentence that says which column is the time."""
-    if layout.time in (ROW, "row"):
-        return "no time column: row numbers from 0 are used"
-    unit = UNIT_NAMES.get(layout.unit_s, f"{layout.unit_s:g} s")
-    return f"time is the column {layout.time!r}, in {unit}{' since 1970' if layout.since_first else ''}"
 
 
 def _find_rising(table: pa.Table) -> str:

@@ -16,7 +16,7 @@ from tuisim.engine.core.conditions import NUMBER
 from tuisim.engine.runs.arrays import FloatArray
 from tuisim.engine.runs.command_events import ScaleChange
 from tuisim.engine.runs.frames import compute_dead_reckoning, compute_scales, find_lacking_columns
-from tuisim.logs.columns import is_numeric, list_numeric_columns
+from tuisim.logs.columns import is_numeric
 from tuisim.logs.expressions import CONSTANTS, FUNCTIONS, Functions, evaluate, find_names
 from tuisim.logs.log import Log, Series
 from tuisim.logs.metadata import SCALES
@@ -25,7 +25,6 @@ from tuisim.logs.signals import (
     compute_integral,
     compute_moving_average,
     resample,
-    sample_unsorted_signal,
     sort_known,
 )
 from tuisim.logs.units import drop_run, parse_unit
@@ -139,7 +138,7 @@ def _sample_column(log: Log, name: str, base: Series) -> FloatArray:
                 return np.full(len(base.rows), np.nan)
             if series.rows is base.rows or series.time_s is base.time_s:
                 return series.values
-            return sample_unsorted_signal(series.time_s, series.values, base.time_s)
+            return series.sample(base.time_s)
     schema = log.table.schema
     if name in schema.names and is_numeric(schema.field(name).type):
         return log.numbers(name)[base.rows]
@@ -151,7 +150,7 @@ def _sample_column(log: Log, name: str, base: Series) -> FloatArray:
 def _list_names(log: Log) -> list[str]:
     """Return the names of a log's variables, without numbers of runs, and of its columns with numbers."""
     variables = (drop_run(name) for name in log.names)
-    return [*dict.fromkeys((*variables, *list_numeric_columns(log.table.schema), TIME))]
+    return [*dict.fromkeys((*variables, *log.numeric_columns, TIME))]
 
 
 def find_computed_columns(log: Log) -> dict[str, Callable[[], FloatArray]]:
@@ -161,7 +160,7 @@ def find_computed_columns(log: Log) -> dict[str, Callable[[], FloatArray]]:
     """
     if (spec := log.find_spec()) is None:
         return {}
-    return find_lacking_columns(spec, list_numeric_columns(log.table.schema), log.numbers)
+    return find_lacking_columns(spec, log.numeric_columns, log.numbers)
 
 
 def list_expression_words(log: Log) -> Iterator[str]:
@@ -226,7 +225,7 @@ def build_reckoned_series(log: Log) -> list[Series]:
     Raises:
         LogError: the log is not telemetry, or has no metadata of the robot.
     """
-    numbers = list_numeric_columns(log.table.schema)
+    numbers = log.numeric_columns
     missing = [name for name in NEEDED if name not in numbers]
     if missing:
         raise LogError(

@@ -321,5 +321,4 @@ EXPORTERS: Mapping[str, Exporter] = {
 }
 """The formats by suffix. To add one: write its function and a line here, and its reader in `logs.reader`."""
 
-ALLOWED = ", ".join(EXPORTERS)
 LISTED = f"{', '.join([*EXPORTERS][:-1])} or {[*EXPORTERS][-1]}"

@@ -18,12 +18,12 @@ from tuisim.engine.runs.arrays import FloatArray
 from tuisim.logs import arrow
 from tuisim.logs.blocks import Block
 from tuisim.logs.choices import NO_CHOICES, ReadChoices
-from tuisim.logs.columns import ROW, list_numeric_columns
+from tuisim.logs.columns import ROW
 from tuisim.logs.export import EXPORTERS, build_typed_frame, find_companion
 from tuisim.logs.expressions import evaluate
 from tuisim.logs.log import Log, Series
 from tuisim.logs.reader import join_tables, open_log, read_companion, read_parts
-from tuisim.logs.signals import Between, build_even_moments, sample_unsorted_signal
+from tuisim.logs.signals import Between, build_even_moments
 from tuisim.logs.text_tables import read_exported_csv
 from tuisim.logs.units import TEXT, TIMEDELTA
 from tuisim.logs.warnings import Notes
@@ -171,10 +171,7 @@ def _build_sampled_frame(
     import pandas as pd
 
     names = arrow.make_names_unique(["time", *(series.name for series in all_series)])
-    known = [
-        sample_unsorted_signal(series.time_s, series.values, moments_s, between)
-        for series in all_series
-    ]
+    known = [series.sample(moments_s, between) for series in all_series]
     return pd.DataFrame(dict(zip(names, [moments_s, *known], strict=True)))
 
 
@@ -195,9 +192,7 @@ def _build_wide_frame(log: Log) -> pd.DataFrame:
     import pandas as pd
 
     if not log.layout.variable:
-        return pd.DataFrame(
-            {name: log.numbers(name) for name in list_numeric_columns(log.table.schema)}
-        )
+        return pd.DataFrame({name: log.numbers(name) for name in log.numeric_columns})
     series = [log.series(name) for name in log.sampled_names]
     moments = np.unique(np.concatenate([member.time_s for member in series]))
     return _build_sampled_frame(moments, series)

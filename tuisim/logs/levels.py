@@ -84,7 +84,7 @@ def _undo_end_clamping(below: FloatArray, noise: int) -> FloatArray:
     return np.where(below >= noise, below, undone)
 
 
-def has_light_levels(name: str, values: FloatArray) -> bool:
+def _has_light_levels(name: str, values: FloatArray) -> bool:
     """Return whether a variable can have levels of light, which greys of the mat cause.
 
     False if its name says otherwise, or if all values are whole numbers from 0 to 7: these are taken for codes of
@@ -123,12 +123,10 @@ class Light(NamedTuple):
         return self.black + percents * ((self.white - self.black) / 100.0)
 
 
-PLAIN_LIGHT = Light()
-"""A sensor that reads the greys as they are, without noise."""
-
-
-def find_light(spec: RunSpec) -> Light:
+def find_light(spec: RunSpec | None) -> Light:
     """Return how the first colour sensor of a run reads the mat; without a sensor, only the noise is known."""
+    if spec is None:
+        return Light()
     noise = spec.world.noise.light
     for sensor in spec.robot.color_sensors:
         dark, span = find_response(sensor, spec.profile)
@@ -150,31 +148,34 @@ class Levels:
     """Shape (n,): the level, corrected for clamped noise near the ends of the scale."""
     spread: FloatArray
     strays: IntArray
-    greys: tuple[Grey | None, ...]
-    """The nearest grey of each; None if there is none, or if the samples are not light levels."""
+    greys: tuple[str, ...]
+    """The name of the nearest grey of each; empty if there is none, or if the samples are not light levels."""
+    grey_percent: FloatArray
+    """Shape (n,): what the sensor reads of that grey; NaN without one."""
 
 
 def measure_levels(
-    values: FloatArray, light: Light | None = PLAIN_LIGHT, search: Search = find_plateaus
+    name: str, values: FloatArray, light: Light, search: Search = find_plateaus
 ) -> Levels:
     """Return the plateaus of samples, with their levels and greys.
 
     Args:
+        name: The variable, which tells whether these are levels of light.
         values: The samples, shape (n,).
-        light: How a sensor read them from the mat; None if they are not levels of light.
+        light: How a sensor reads levels of light from the mat.
         search: Finds the plateaus.
     """
     finite = values[np.isfinite(values)]
     magnitude = find_scale(float(finite.min()), float(finite.max())) if len(finite) else 1.0
     plateaus = search(values if magnitude == 1.0 else values / magnitude)
     level = plateaus["level"] * magnitude
-    scale = find_light_scale(values) if light else 0.0
+    scale = find_light_scale(values) if _has_light_levels(name, values) else 0.0
     true_level = level
-    greys_near: list[Grey | None] = [None] * len(plateaus)
-    if light and scale:
+    greys: list[Grey | None] = [None] * len(level)
+    if scale:
         percents = undo_clamping(light.undo_response(level * scale), light.noise)
         true_level = light.seen(percents) / scale if light.noise else level
-        greys_near = find_nearest_greys(percents)
+        greys = find_nearest_greys(percents)
     return Levels(
         plateaus["start"],
         plateaus["stop"],
@@ -182,5 +183,6 @@ def measure_levels(
         true_level,
         plateaus["spread"] * magnitude,
         plateaus["strays"],
-        tuple(greys_near),
+        tuple(grey.name if grey else "" for grey in greys),
+        light.seen(np.array([grey.percent if grey else np.nan for grey in greys])),
     )

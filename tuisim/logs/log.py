@@ -16,8 +16,16 @@ from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.runs.arrays import FloatArray, IntArray
 from tuisim.logs.arrow import convert_to_floats, read_numbers, wrap_int64
 from tuisim.logs.choices import NO_CHOICES, ReadChoices
-from tuisim.logs.columns import NO_ROWS, ROW, Layout, read_times
+from tuisim.logs.columns import (
+    NO_ROWS,
+    ROW,
+    Layout,
+    choose_columns,
+    list_numeric_columns,
+    read_times,
+)
 from tuisim.logs.metadata import read_spec
+from tuisim.logs.signals import Between, sample_signal, sort_known
 from tuisim.logs.time_order import keep_timed_rows
 from tuisim.logs.units import drop_run
 from tuisim.logs.warnings import Notes
@@ -112,6 +120,11 @@ class Series:
     """Shape (n,): row of each sample in the table, from 0, increasing."""
     run: int = 0
     """Number in the run column, 0 if there is none."""
+
+    def sample(self, moments_s: FloatArray, between: Between = Between.HOLD) -> FloatArray:
+        """Return its values at given times, shape (m,); see `signals.sample_signal`."""
+        known = sort_known(self.time_s, self.values)
+        return sample_signal(self.time_s[known], self.values[known], moments_s, between)
 
 
 @dataclass(slots=True)
@@ -210,6 +223,11 @@ class Log:
         return Series(member.name, cache.whole[1], values, cache.whole[0], member.run)
 
     @property
+    def numeric_columns(self) -> list[str]:
+        """The names of the columns with numbers."""
+        return list_numeric_columns(self.table.schema)
+
+    @property
     def times_s(self) -> FloatArray:
         """The time of each row in seconds, shape (n,).
 
@@ -242,28 +260,24 @@ class Log:
             self._cache.specs[run] = read_spec(self.metadata, run)
         return self._cache.specs[run]
 
-    def replace_layout(self, layout: Layout) -> Log:
-        """Return the same log with another layout: which columns are time, run, variable and values.
+    def choose(self, choices: ReadChoices) -> Log:
+        """Return the same log with the columns of time and values that the user has chosen.
 
         Rows without a value in the new column of time are left out.
+
+        Raises:
+            LogError: the table has no such column, or it is not numeric.
         """
-        log = self.drop_all_derived()
         notes = Notes()
-        table, layout, _ = keep_timed_rows(log.table, layout, notes)
+        layout = choose_columns(self.table, choices)
+        table, layout, _ = keep_timed_rows(self.table, layout, notes)
         return replace(
-            log,
+            self,
             table=table,
             layout=layout,
-            notes=(*log.notes, *notes.texts()),
+            notes=(*self.notes, *notes.texts()),
             _cache=LogCache(),
         )
-
-    def drop_all_derived(self) -> Log:
-        """Return the same log without derived series."""
-        log = self
-        for name in self.derived:
-            log = log.drop_derived(drop_run(name))
-        return log
 
     def add_derived(self, column: str, series: Sequence[Series]) -> Log:
         """Return a log with the series of a further derived variable; an earlier one of the same name is replaced.

@@ -4,14 +4,8 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
-from tuisim.engine.runs.arrays import FloatArray
-
 _MAX_EXPONENT = 400
 """Of numbers between this power of two and its inverse, the sums of squares neither overflow nor vanish."""
-MAX_DRAWN = 1e300
-"""Charts draw larger numbers at this one: the distances between places on an axis must not overflow."""
 
 
 def find_scale(low: float, high: float) -> float:
@@ -24,10 +18,3 @@ def find_scale(low: float, high: float) -> float:
     """
     exponent = math.frexp(max(-low, high))[1]
     return math.ldexp(1.0, exponent - min(max(exponent, -_MAX_EXPONENT), _MAX_EXPONENT))
-
-
-def limit_drawn(numbers: FloatArray) -> FloatArray:
-    """Return numbers with all finite numbers limited to ±`MAX_DRAWN`, for charts."""
-    if not len(numbers) or (numbers.min() >= -MAX_DRAWN and numbers.max() <= MAX_DRAWN):
-        return numbers
-    return np.where(np.isfinite(numbers), numbers.clip(-MAX_DRAWN, MAX_DRAWN), numbers)

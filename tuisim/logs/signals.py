@@ -129,7 +129,8 @@ def resample(
     if not len(values):
         return np.empty(0), np.empty(0)
     moments = build_even_moments(float(time_s.min()), float(time_s.max()), period_s)
-    return moments, sample_unsorted_signal(time_s, values, moments)
+    known = sort_known(time_s, values)
+    return moments, sample_signal(time_s[known], values[known], moments)
 
 
 def build_even_moments(start_s: float, stop_s: float, period_s: float) -> FloatArray:
@@ -148,20 +149,6 @@ def build_even_moments(start_s: float, stop_s: float, period_s: float) -> FloatA
         )
     moments: FloatArray = start_s + np.arange(int(count), dtype=np.float64) * period_s
     return moments
-
-
-def sample_unsorted_signal(
-    time_s: FloatArray, values: FloatArray, moments_s: FloatArray, between: Between = Between.HOLD
-) -> FloatArray:
-    """Return the values of an unsorted signal at given times, shape (m,); see `sample_signal`.
-
-    Args:
-        time_s: Shape (n,), in any order.
-        values: Shape (n,); values that are not finite are skipped.
-        moments_s: Shape (m,).
-    """
-    known = sort_known(time_s, values)
-    return sample_signal(time_s[known], values[known], moments_s, between)
 
 
 def sample_signal(

@@ -47,27 +47,6 @@ _STRETCH = 100_000
 """Rows that are searched at a time."""
 
 
-def parse_conditions(text: str, columns: list[str]) -> list[ValueCondition]:
-    """Return the conditions in a text such as `variable == Colour and value > 50`.
-
-    Args:
-        text: The text.
-        columns: The columns that it may name.
-
-    Raises:
-        LogError: a part of the text is not a condition, or names a column that is not in `columns`.
-    """
-    conditions = []
-    for part in re.split(r"\s+and\s+|\s*,\s*", text.strip()):
-        condition = parse_condition(part, name=r"[^<>=!~]+?", value=".*?")
-        if condition is None:
-            raise LogError(f"no condition: {part!r}", FORM)
-        if condition.name not in columns:
-            raise LogError(f"no column {condition.name!r}", among(condition.name, columns))
-        conditions.append(replace(condition, value=condition.value.strip("'\"")))
-    return conditions
-
-
 @dataclass(frozen=True, slots=True)
 class TableView:
     """The rows of a log that a table shows, and their order."""
@@ -129,6 +108,23 @@ class Rows:
         return table[first:last] if order is None else table.take(order[first:last])
 
     # Which rows, in which order
+
+    def parse_conditions(self, text: str) -> tuple[ValueCondition, ...]:
+        """Return the conditions in a text such as `variable == Colour and value > 50`; none if it is empty.
+
+        Raises:
+            LogError: a part of the text is not a condition, or names a column that the log does not have.
+        """
+        columns = self._log.table.column_names
+        conditions = []
+        for part in re.split(r"\s+and\s+|\s*,\s*", text.strip()) if text else ():
+            condition = parse_condition(part, name=r"[^<>=!~]+?", value=".*?")
+            if condition is None:
+                raise LogError(f"no condition: {part!r}", FORM)
+            if condition.name not in columns:
+                raise LogError(f"no column {condition.name!r}", among(condition.name, columns))
+            conditions.append(replace(condition, value=condition.value.strip("'\"")))
+        return tuple(conditions)
 
     def build_filtered_view(self, conditions: tuple[ValueCondition, ...]) -> TableView:
         """Return a view of the rows that meet all conditions, in the current order. This is slow for a long log.

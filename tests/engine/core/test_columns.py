@@ -17,7 +17,6 @@ from tuisim.engine.core.sensors import list_columns
 from tuisim.engine.runs.frames import compute_column_values
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
-from tuisim.logs.table import parse_conditions
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import Settings
 from tuisim.tasks.goals.judge import judge
@@ -85,10 +84,8 @@ def test_each_column_name_can_be_used_in_events_and_filters_of_the_analyser(
     model = AnalysisModel(opened)
     model.add_named_columns(f"{name} changes")
     assert len(find_events(model.log, parse_events(f"{name} changes", model.log))) > 5
-    conditions = parse_conditions(
-        f"{name} == {value_of(run, name)!r}", model.log.table.column_names
-    )
-    model.rows.view = model.rows.build_filtered_view(tuple(conditions))
+    conditions = model.rows.parse_conditions(f"{name} == {value_of(run, name)!r}")
+    model.rows.view = model.rows.build_filtered_view(conditions)
     assert 0 < len(model.rows) < model.log.rows
     model.derive(f"half = {name} / 2")
     assert model.log.series("half").values[-1] == value_of(run, name) / 2

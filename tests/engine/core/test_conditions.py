@@ -28,7 +28,7 @@ from tuisim.engine.runs.records import OutputRow, Stream
 from tuisim.logs.columns import Layout
 from tuisim.logs.expressions import evaluate
 from tuisim.logs.log import Log
-from tuisim.logs.table import Rows, parse_conditions
+from tuisim.logs.table import Rows
 
 VALUES = (40.0, 50.0, 60.0)
 
@@ -68,7 +68,7 @@ def by_goto(condition: str) -> list[float]:
 
 def by_filter(condition: str) -> list[float]:
     rows = Rows(Log("test", pa.table({"Colour": VALUES, "word": ["a b", "> 5", ""]}), Layout()))
-    rows.view = rows.build_filtered_view(tuple(parse_conditions(condition, rows.columns)))
+    rows.view = rows.build_filtered_view(rows.parse_conditions(condition))
     return [VALUES[rows.row(place)] for place in range(len(rows))]
 
 

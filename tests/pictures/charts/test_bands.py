@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.cases import for_each
-from tuisim.logs.levels import PLAIN_LIGHT
+from tuisim.logs.levels import Light
 from tuisim.pictures.charts.bands import MAX_SAMPLES, SHADES, find_spans, place_names
 from tuisim.pictures.charts.plot_image import PlotInks
 from tuisim.pictures.charts.text_chart import ChartPainter, ChartState
@@ -22,7 +22,7 @@ SHADED = ((40, 50, 60), (30, 40, 50))
 def chart(values: list[float]) -> tuple[Traces, ChartState]:
     traces = Traces()
     traces.append("Colour", (np.arange(len(values)) / 10).tolist(), values)
-    return traces, ChartState(spans=find_spans(next(iter(traces)), PLAIN_LIGHT))
+    return traces, ChartState(spans=find_spans(next(iter(traces)), Light()))
 
 
 def test_each_band_is_named_by_its_level_and_grey() -> None:
@@ -43,7 +43,7 @@ def test_the_steps_of_a_slope_are_no_bands() -> None:
 
 
 def test_names_are_all_long_or_all_short_and_never_touch() -> None:
-    spans = find_spans(next(iter(chart([86.2745] * 9 + [82.745] * 9 + [0.0])[0])), PLAIN_LIGHT)
+    spans = find_spans(next(iter(chart([86.2745] * 9 + [82.745] * 9 + [0.0])[0])), Light())
 
     wide = place_names(spans, [range(20), range(20, 40), range(40, 41)], 4, 41, lambda *_: True)
     narrow = place_names(spans, [range(3), range(3, 6), range(6, 7)], 4, 7, lambda *_: True)
@@ -53,14 +53,14 @@ def test_names_are_all_long_or_all_short_and_never_touch() -> None:
 
 
 def test_band_names_with_room_between_them_are_in_the_lowest_row() -> None:
-    spans = find_spans(next(iter(chart(LEVELS)[0])), PLAIN_LIGHT)
+    spans = find_spans(next(iter(chart(LEVELS)[0])), Light())
     places = [range(20), range(20, 40), range(40, 60)]
     assert [row for row, _, _ in place_names(spans, places, 4, 60, lambda *_: True)] == [3, 3, 3]
 
 
 @pytest.mark.parametrize("values", [LEVELS, LEVELS[::-1]], ids=["white first", "white last"])
 def test_a_bands_name_stands_beside_a_cursor_and_within_the_chart(values: list[float]) -> None:
-    spans = find_spans(next(iter(chart(values)[0])), PLAIN_LIGHT)
+    spans = find_spans(next(iter(chart(values)[0])), Light())
     places = [range(5), range(5, 10), range(10, 15)]
 
     def put(cursors: list[int]) -> list[tuple[int, int, str]]:
@@ -74,7 +74,7 @@ def test_a_bands_name_stands_beside_a_cursor_and_within_the_chart(values: list[f
 
 @for_each(columns=range(16, 40))
 def test_a_bands_name_at_the_edge_stands_within_the_chart(columns: int) -> None:
-    spans = find_spans(next(iter(chart(LEVELS)[0])), PLAIN_LIGHT)
+    spans = find_spans(next(iter(chart(LEVELS)[0])), Light())
     places = [range(4), range(4, columns - 4), range(columns - 4, columns)]
     names = place_names(spans, places, 4, columns, lambda *_: True)
     assert len(names) == 3
@@ -82,7 +82,7 @@ def test_a_bands_name_at_the_edge_stands_within_the_chart(columns: int) -> None:
 
 
 def test_a_name_that_would_stand_beside_a_higher_part_of_the_curve_is_left_out() -> None:
-    spans = find_spans(next(iter(chart(LEVELS)[0])), PLAIN_LIGHT)
+    spans = find_spans(next(iter(chart(LEVELS)[0])), Light())
     places = [range(20), range(20, 40), range(40, 60)]
 
     def is_free(row: int, first: int, stop: int) -> bool:

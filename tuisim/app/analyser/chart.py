@@ -17,8 +17,7 @@ from tuisim.app import design
 from tuisim.app.plot_view import PlotView
 from tuisim.base import palette
 from tuisim.base.data_class import dataclass
-from tuisim.logs.magnitude import limit_drawn
-from tuisim.pictures.charts.axes import Limits, find_column
+from tuisim.pictures.charts.axes import Limits, find_column, limit_drawn
 from tuisim.pictures.charts.canvas import BRAILLE, draw_xy_chart
 from tuisim.pictures.charts.text_chart import (
     ChartPainter,

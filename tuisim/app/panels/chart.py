@@ -16,7 +16,7 @@ from tuisim.app.clipboard import Copied
 from tuisim.app.plot_view import PlotView
 from tuisim.app.snapshot import AT_REST, CHART_PERIOD_S, RunPhase, Snapshot
 from tuisim.base.data_class import dataclass
-from tuisim.logs.levels import PLAIN_LIGHT, find_light
+from tuisim.logs.levels import find_light
 from tuisim.pictures.charts import axes
 from tuisim.pictures.charts.bands import find_spans
 from tuisim.pictures.charts.layout import Span
@@ -79,7 +79,7 @@ class Chart(LinesPanel, can_focus=True):
         self._lag = ""
         self._printed_s = 0.0
         """When the newest line of the output at a past instant was printed."""
-        self._light = PLAIN_LIGHT
+        self._light = find_light(None)
         self._is_at_rest = False
         self._spanned: object = None
         """The data in which the bands were found last."""

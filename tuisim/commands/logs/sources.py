@@ -16,7 +16,6 @@ from tuisim.engine.core.sensors import list_column_names, list_columns
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
 from tuisim.logs.choices import ReadChoices
-from tuisim.logs.columns import choose_columns, time_in_words
 from tuisim.logs.derived import add_named_columns
 from tuisim.logs.expressions import find_names
 from tuisim.logs.log import Log
@@ -109,8 +108,7 @@ def _open_runs(words: Sequence[str], arguments: Arguments) -> Iterator[Log]:
                 )
             hint = "a program logs by printing lines such as `Colour: 50`; --telemetry uses every tick instead"
             raise LogError("no samples", damage or hint, file=log.title)
-        layout = choose_columns(log.table, build_choices(arguments))
-        yield _prepare_log(log.replace_layout(layout), arguments)
+        yield _prepare_log(log.choose(build_choices(arguments)), arguments)
 
 
 def _read_runs(runs: Sequence[StoredRun], arguments: Arguments) -> list[Log]:
@@ -168,7 +166,7 @@ def _open_file(word: str, arguments: Arguments) -> Log:
     # Exports of tuisim name their time column in the metadata.
     if arguments.time is None and not log.metadata:
         hint = "--time COLUMN selects another, --time '' uses row numbers"
-        echo_error(f"note: {log.title}: {time_in_words(log.layout)} ({hint})")
+        echo_error(f"note: {log.title}: {log.layout.describe_time()} ({hint})")
     return _prepare_log(log, arguments)
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, TypeVar
 
+import numpy as np
+
 if TYPE_CHECKING:
     from tuisim.engine.runs.arrays import FloatArray
 
@@ -13,6 +15,16 @@ _STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 Gems, 1990), and 2.5, without which a step of 2 is followed by one more than twice as long."""
 
 Limits = tuple[float, float]
+
+MAX_DRAWN = 1e300
+"""Charts draw larger numbers at this one: the distances between places on an axis must not overflow."""
+
+
+def limit_drawn(numbers: FloatArray) -> FloatArray:
+    """Return numbers with all finite numbers limited to ±`MAX_DRAWN`, for charts."""
+    if not len(numbers) or (numbers.min() >= -MAX_DRAWN and numbers.max() <= MAX_DRAWN):
+        return numbers
+    return np.where(np.isfinite(numbers), numbers.clip(-MAX_DRAWN, MAX_DRAWN), numbers)
 
 
 def choose_step(span: float, count: int) -> float:

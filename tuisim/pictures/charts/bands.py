@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from rich.style import Style
 
 from tuisim.base import palette
-from tuisim.logs.levels import Light, has_light_levels, measure_levels
+from tuisim.logs.levels import Light, measure_levels
 from tuisim.pictures.charts import axes
 from tuisim.pictures.charts.axes import Limits
 from tuisim.pictures.charts.layout import Span, fit_names
@@ -46,11 +46,9 @@ def find_spans(trace: Trace, light: Light) -> tuple[Span, ...]:
     """
     if len(trace.times_s) > MAX_SAMPLES:
         return ()
-    levels = measure_levels(
-        trace.values, light if has_light_levels(trace.name, trace.values) else None
-    )
+    levels = measure_levels(trace.name, trace.values, light)
     ends = trace.times_s[levels.start].tolist(), trace.times_s[levels.stop - 1].tolist()
-    names = [grey.name if grey and not trace.scale else "" for grey in levels.greys]
+    names = ["" if trace.scale else grey for grey in levels.greys]
     rows = zip(*ends, levels.level.tolist(), names, strict=True)
     return tuple(
         build_band_span(trace.name, start_s, stop_s, level, name)

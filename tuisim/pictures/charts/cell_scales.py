@@ -10,9 +10,8 @@ import numpy as np
 from rich.style import Style
 
 from tuisim.base.data_class import dataclass
-from tuisim.logs.magnitude import limit_drawn
 from tuisim.pictures.charts import axes
-from tuisim.pictures.charts.axes import Limits
+from tuisim.pictures.charts.axes import Limits, limit_drawn
 from tuisim.pictures.charts.canvas import AXIS, BRAILLE, Curve, build_style
 from tuisim.pictures.charts.scales import Scale, Scales
 from tuisim.pictures.charts.traces import Trace

@@ -8,8 +8,7 @@ import numpy as np
 
 from tuisim.engine.runs.arrays import FloatArray
 from tuisim.engine.runs.samples import Sample
-from tuisim.logs.magnitude import limit_drawn
-from tuisim.pictures.charts.axes import Limits, choose_limits, widen_times
+from tuisim.pictures.charts.axes import Limits, choose_limits, limit_drawn, widen_times
 from tuisim.pictures.charts.canvas import DOTS_X, DOTS_Y, drop_hidden_points
 from tuisim.pictures.charts.layout import ChartData, Line
 from tuisim.pictures.charts.scales import add_unit

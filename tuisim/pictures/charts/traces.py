@@ -9,9 +9,10 @@ import numpy.typing as npt
 
 from tuisim.engine.core.css_colors import Rgb
 from tuisim.engine.runs.arrays import FloatArray
-from tuisim.logs.magnitude import MAX_DRAWN, find_scale, limit_drawn
+from tuisim.logs.magnitude import find_scale
 from tuisim.logs.signals import Summary, compute_summary
 from tuisim.logs.units import drop_run, parse_unit
+from tuisim.pictures.charts.axes import MAX_DRAWN, limit_drawn
 
 TRACE_COLORS: tuple[Rgb, ...] = (
     (240, 228, 66),

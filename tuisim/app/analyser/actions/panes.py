@@ -19,7 +19,7 @@ from tuisim.app.analyser.world import NO_POSES, has_poses
 from tuisim.base.errors import LogError
 from tuisim.engine.core.conditions import list_operators
 from tuisim.logs.log import Log
-from tuisim.logs.table import TableTask, TableView, parse_conditions
+from tuisim.logs.table import TableTask, TableView
 
 if TYPE_CHECKING:
     from tuisim.analysis.model import AnalysisModel
@@ -136,7 +136,7 @@ def select(screen: LogScreen) -> None:
     def keep(text: str) -> None:
         model = screen.model
         model.add_named_columns(text)
-        conditions = tuple(parse_conditions(text, model.log.table.column_names)) if text else ()
+        conditions = model.rows.parse_conditions(text)
         then = partial(_arrange, screen, model)
         screen.run_task(
             "filtering …",
