@@ -5,7 +5,6 @@ from __future__ import annotations
 from tests.cases import cases
 from tuisim.base.source import Program
 from tuisim.programs.facts import ProgramFacts
-from tuisim.programs.remarks import list_spins, list_wrong_units
 
 
 @cases(
@@ -42,7 +41,7 @@ def test_the_colour_of_which_the_lines_around_a_loop_speak_is_found(text: str, c
 )
 def test_wheels_set_against_each_other_are_no_way_forwards(text: str, words: list[str]) -> None:
     facts = ProgramFacts(Program("task.py", text))
-    assert [spin.words for spin in list_spins(facts.tree, facts.remarks)] == words
+    assert [spin.words for spin in facts.remarks.list_spins()] == words
 
 
 @cases(
@@ -73,5 +72,5 @@ def test_wheels_set_against_each_other_are_no_way_forwards(text: str, words: lis
 )
 def test_numbers_in_another_unit_are_found_where_that_is_clear(text: str, words: str) -> None:
     facts = ProgramFacts(Program("task.py", text))
-    wrong = list_wrong_units(facts.tree, facts.remarks)
+    wrong = facts.remarks.list_wrong_units()
     assert [each.text for each in wrong] == ([words] if words else [])

@@ -4,7 +4,6 @@ __all__ = [
     "constants",
     "facts",
     "function",
-    "idle_moves",
     "line_values",
     "moves",
     "names",
@@ -12,6 +11,5 @@ __all__ = [
     "plugged_words",
     "program_file",
     "program_settings",
-    "remarks",
     "uses",
 ]

@@ -13,9 +13,10 @@ from tuisim.base.source import PRELUDE_TEXTS, PYBRICKS, Program
 from tuisim.base.syntax_tree import parse_module
 from tuisim.engine.core.sensors.color import LightRead
 from tuisim.engine.core.spec import RobotSpec
+from tuisim.programs import moves, uses
 from tuisim.programs.comparisons import list_constants
 from tuisim.programs.fixed_conditions import list_fixed_conditions
-from tuisim.programs.idle_moves import list_idle_moves
+from tuisim.programs.idle_moves import list_idle_moves, list_stopping_loops
 from tuisim.programs.mistakes import (
     explain_error,
     find_fault,
@@ -220,7 +221,39 @@ class ProgramFacts:
         # Imported on demand: only a search for the reasons why a run went wrong needs it.
         from tuisim.programs.remarks import Remarks
 
-        return Remarks(self._program.text)
+        return Remarks(self._program.text, self.tree)
+
+    def find_steering(self, line: int) -> int:
+        """Return the line around `line` that steers the robot again and again; see `moves.find_steering`."""
+        return moves.find_steering(self.tree, line)
+
+    def list_unwaited_moves(self) -> list[moves.UnwaitedMove]:
+        """Return the calls of moves with `block=False` or `wait=False`."""
+        return [*moves.list_unwaited_moves(self.tree)]
+
+    def list_parted_moves(self) -> Iterator[moves.PartedMove]:
+        """Yield each two calls that move the wheels equally, but one after the other; see `moves.list_parted_moves`."""
+        return moves.list_parted_moves(self.tree, self.remarks.has_straight_comment)
+
+    def list_wheel_turns(self) -> Iterator[moves.WheelTurn]:
+        """Yield the calls that turn the wheels in opposite directions by an angle usual for turns of robots."""
+        return moves.list_wheel_turns(self.tree)
+
+    def list_stopping_loops(self) -> Iterator[tuple[int, str, range]]:
+        """Yield the lines in loops that stop the motors in the first pass; see `idle_moves.list_stopping_loops`."""
+        return list_stopping_loops(self.tree)
+
+    def list_stale_reads(self) -> Iterator[LoopEnd]:
+        """Yield each use in a loop of a reading that the program took before it, and never again in it."""
+        return uses.list_stale_reads(self.tree, self.constants)
+
+    def list_lone_stops(self) -> Iterator[uses.LoneStop]:
+        """Yield each `if` outside of `while` loops that stops motors which the same block has just started."""
+        return uses.list_lone_stops(self.tree, self.constants)
+
+    def list_lost_values(self) -> Iterator[uses.LostValue]:
+        """Yield each value that a function assigns to a local name, although it probably means a global one."""
+        return uses.list_lost_values(self.tree)
 
     def find_turns(self, line: int) -> tuple[float, str] | None:
         """Return by how much a call on a line turns a motor or both wheels, and the unit: `rotations` or `degrees`.

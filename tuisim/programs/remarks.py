@@ -49,10 +49,12 @@ class Remarks:
 
     Args:
         text: The program.
+        tree: Its syntax tree.
     """
 
-    def __init__(self, text: str) -> None:
+    def __init__(self, text: str, tree: ast.Module) -> None:
         self._lines = source_lines(text)
+        self._tree = tree
 
     def find_color(self, first_line: int, last_line: int, ends: Collection[int] = ()) -> str:
         """Return `black` or `white` if the lines in and around a loop name this colour and no other.
@@ -88,6 +90,97 @@ class Remarks:
         is_straight = is_forwards(text) or bool(_STRAIGHT.search(text))
         return is_straight and not (_TURNS.search(text) or _CURVES.search(text))
 
+    def list_spins(self) -> Iterator[NamedAim]:
+        """Yield moves that turn the wheels in opposite directions, although the program says "straight"."""
+        forwards = {
+            part
+            for node in ast.walk(self._tree)
+            if isinstance(node, ast.FunctionDef) and is_forwards(node.name)
+            for part in ast.walk(node)
+        }
+        for block in list_blocks(self._tree):
+            for first, second in pairwise([*block, ast.Pass()]):
+                speeds, last = _list_speeds(first), first
+                if len(speeds) == 1:
+                    speeds, last = speeds + _list_speeds(second), second
+                is_spin = len(speeds) == 2 and speeds[0] == -speeds[1] != 0
+                if is_spin and (first in forwards or self.goes_straight(first.lineno)):
+                    words = f"{speeds[0]:g} and {speeds[1]:g}"
+                    yield NamedAim(first.lineno, last.end_lineno or last.lineno, "straight", words)
+
+    def list_curves(self) -> Iterator[NamedAim]:
+        """Yield moves that drive in a curve, although a comment says that they drive straight.
+
+        Their two numbers are in the wrong form for the class: a steering and a speed, or a speed for each wheel.
+        """
+        classes = find_classes(self._tree)
+        for node in ast.walk(self._tree):
+            match node:
+                case ast.Expr(value=ast.Call(func=ast.Attribute(value=owner), args=[_, _, *_])) if (
+                    speeds := _list_speeds(node)
+                ):
+                    words = _describe_curve(classes.get(ast.unparse(owner), ""), *speeds)
+                    if words and self.has_straight_comment(node.lineno):
+                        yield NamedAim(
+                            node.lineno, node.end_lineno or node.lineno, "straight", words
+                        )
+
+    def list_named_turns(self) -> Iterator[NamedAim]:
+        """Yield the functions and moves of a program whose name or comment says to which side the robot turns.
+
+        Functions that are also called with negative numbers are left out.
+        """
+        nodes = [*ast.walk(self._tree)]
+        backwards = {
+            ast.unparse(node.func)
+            for node in nodes
+            if isinstance(node, ast.Call) and any((find_number(arg) or 0) < 0 for arg in node.args)
+        }
+        for node in nodes:
+            match node:
+                case ast.FunctionDef(name=name) if name not in backwards and (
+                    side := _find_side(name)
+                ):
+                    yield NamedAim(node.lineno, node.end_lineno or node.lineno, side, name)
+                case ast.Expr() if find_call(node, ANY_MOVE) and (
+                    side := self.find_side(node.lineno)
+                ):
+                    # The line after one that starts motors is the one that waits.
+                    last_line = (node.end_lineno or node.lineno) + bool(find_call(node, STARTS))
+                    yield NamedAim(node.lineno, last_line, side, "the comment")
+
+    def list_wrong_units(self) -> Iterator[WrongUnit]:
+        """Yield the calls whose numbers are probably meant in another unit or in another order."""
+        ways = {
+            name: node.lineno
+            for node in ast.walk(self._tree)
+            if isinstance(node, ast.Assign)
+            and self.has_centimetres(node.lineno, find_number(node.value))
+            for name in map(ast.unparse, node.targets)
+        }
+        for node in ast.walk(self._tree):
+            match node:
+                case ast.Call(
+                    func=ast.Attribute(attr="straight"), args=[ast.Name(id=name), *_]
+                ) if name in ways:
+                    text = f"straight counts in mm, but {name} is in cm: line {ways[name]} says so"
+                    yield WrongUnit(node.lineno, text)
+                case ast.Call(func=ast.Attribute(attr="straight"), args=[number, *_]) if (
+                    self.has_centimetres(node.lineno, way := find_number(number))
+                ):
+                    text = f"straight({way:g}) drives {way:g} mm: straight({(way or 0) * 10:g}) drives {way:g} cm"
+                    yield WrongUnit(node.lineno, text)
+                case ast.Call(
+                    func=ast.Name(id="sleep") | ast.Attribute(attr="sleep"),
+                    args=[ast.Constant(value=int() | float() as seconds)],
+                ) if seconds >= _MIN_SLEEP:
+                    text = f"sleep({seconds}) waits {seconds} s, not ms: sleep({seconds / 1000:g}) waits {seconds} ms"
+                    yield WrongUnit(node.lineno, text, is_endless=True)
+                case ast.Call(func=ast.Attribute(attr="on_for_seconds"), args=[*args], keywords=[]):
+                    numbers = [find_number(arg) for arg in args]
+                    if text := _describe_order(numbers) or _describe_duration(numbers):
+                        yield WrongUnit(node.lineno, text, is_endless=True)
+
     def _read_comment(self, line: int) -> str:
         """Return the comment on a line or, if there is none, the one above it; empty for none."""
         above = self._read_lines(line - 1, line - 1).strip()
@@ -116,41 +209,6 @@ class NamedAim:
     """The two speeds, which turn the wheels in opposite directions; of a turn, what says the side; of a curve, why."""
 
 
-def list_spins(tree: ast.Module, remarks: Remarks) -> Iterator[NamedAim]:
-    """Yield moves that turn the wheels in opposite directions although the program says that they drive straight."""
-    forwards = {
-        part
-        for node in ast.walk(tree)
-        if isinstance(node, ast.FunctionDef) and is_forwards(node.name)
-        for part in ast.walk(node)
-    }
-    for block in list_blocks(tree):
-        for first, second in pairwise([*block, ast.Pass()]):
-            speeds, last = _list_speeds(first), first
-            if len(speeds) == 1:
-                speeds, last = speeds + _list_speeds(second), second
-            is_spin = len(speeds) == 2 and speeds[0] == -speeds[1] != 0
-            if is_spin and (first in forwards or remarks.goes_straight(first.lineno)):
-                words = f"{speeds[0]:g} and {speeds[1]:g}"
-                yield NamedAim(first.lineno, last.end_lineno or last.lineno, "straight", words)
-
-
-def list_curves(tree: ast.Module, remarks: Remarks) -> Iterator[NamedAim]:
-    """Yield moves that drive in a curve, although a comment says that they drive straight.
-
-    Their two numbers are in the wrong form for the class: a steering and a speed, or a speed for each wheel.
-    """
-    classes = find_classes(tree)
-    for node in ast.walk(tree):
-        match node:
-            case ast.Expr(value=ast.Call(func=ast.Attribute(value=owner), args=[_, _, *_])) if (
-                speeds := _list_speeds(node)
-            ):
-                words = _describe_curve(classes.get(ast.unparse(owner), ""), *speeds)
-                if words and remarks.has_straight_comment(node.lineno):
-                    yield NamedAim(node.lineno, node.end_lineno or node.lineno, "straight", words)
-
-
 def _describe_curve(class_name: str, first: float, second: float = 0.0) -> str:
     """Return why a move with two numbers does not drive straight on; empty if it does, or if that is not known.
 
@@ -171,29 +229,6 @@ def _find_side(text: str) -> str:
     sides = [side for side, words in _SIDES.items() if words.search(text)]
     is_turn = len(sides) == 1 and _TURNS.search(text) and not _NO_SIDES.search(text)
     return sides[0] if is_turn else ""
-
-
-def list_named_turns(tree: ast.Module, remarks: Remarks) -> Iterator[NamedAim]:
-    """Yield the functions and moves of a program whose name or comment says to which side the robot turns.
-
-    Functions that are also called with negative numbers are left out.
-    """
-    nodes = [*ast.walk(tree)]
-    backwards = {
-        ast.unparse(node.func)
-        for node in nodes
-        if isinstance(node, ast.Call) and any((find_number(arg) or 0) < 0 for arg in node.args)
-    }
-    for node in nodes:
-        match node:
-            case ast.FunctionDef(name=name) if name not in backwards and (side := _find_side(name)):
-                yield NamedAim(node.lineno, node.end_lineno or node.lineno, side, name)
-            case ast.Expr() if find_call(node, ANY_MOVE) and (
-                side := remarks.find_side(node.lineno)
-            ):
-                # The line after one that starts motors is the one that waits.
-                last_line = (node.end_lineno or node.lineno) + bool(find_call(node, STARTS))
-                yield NamedAim(node.lineno, last_line, side, "the comment")
 
 
 def _list_speeds(statement: ast.stmt) -> list[float]:
@@ -225,39 +260,6 @@ _MIN_MS = 500
 _MIN_SPEED = 15
 _MAX_TIME = 10
 """Equal numbers of at least `_MIN_SPEED` are speeds; a number of at most `_MAX_TIME` before them is a time."""
-
-
-def list_wrong_units(tree: ast.Module, remarks: Remarks) -> Iterator[WrongUnit]:
-    """Yield the calls whose numbers are probably meant in another unit or in another order."""
-    ways = {
-        name: node.lineno
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Assign)
-        and remarks.has_centimetres(node.lineno, find_number(node.value))
-        for name in map(ast.unparse, node.targets)
-    }
-    for node in ast.walk(tree):
-        match node:
-            case ast.Call(func=ast.Attribute(attr="straight"), args=[ast.Name(id=name), *_]) if (
-                name in ways
-            ):
-                text = f"straight counts in mm, but {name} is in cm: line {ways[name]} says so"
-                yield WrongUnit(node.lineno, text)
-            case ast.Call(func=ast.Attribute(attr="straight"), args=[number, *_]) if (
-                remarks.has_centimetres(node.lineno, way := find_number(number))
-            ):
-                text = f"straight({way:g}) drives {way:g} mm: straight({(way or 0) * 10:g}) drives {way:g} cm"
-                yield WrongUnit(node.lineno, text)
-            case ast.Call(
-                func=ast.Name(id="sleep") | ast.Attribute(attr="sleep"),
-                args=[ast.Constant(value=int() | float() as seconds)],
-            ) if seconds >= _MIN_SLEEP:
-                text = f"sleep({seconds}) waits {seconds} s, not ms: sleep({seconds / 1000:g}) waits {seconds} ms"
-                yield WrongUnit(node.lineno, text, is_endless=True)
-            case ast.Call(func=ast.Attribute(attr="on_for_seconds"), args=[*args], keywords=[]):
-                numbers = [find_number(arg) for arg in args]
-                if text := _describe_order(numbers) or _describe_duration(numbers):
-                    yield WrongUnit(node.lineno, text, is_endless=True)
 
 
 def _describe_order(numbers: Sequence[float | None]) -> str:

@@ -11,7 +11,7 @@ import numpy as np
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.commands.calls import Call
 from tuisim.engine.runs.command_words import CALL_WORDS, Aim
-from tuisim.programs import moves
+from tuisim.programs.moves import UnwaitedMove
 from tuisim.tasks.reasons.run_data import STOP_CALLS, RunData
 from tuisim.tasks.reasons.unmet import Unmet
 
@@ -74,7 +74,7 @@ def list_cut_moves(data: RunData) -> Iterator[Unmet]:
 
     A part is a motor or a drive base.
     """
-    unwaited = [*moves.list_unwaited_moves(data.facts.tree)]
+    unwaited = data.facts.list_unwaited_moves()
     if not unwaited:
         return
     calls = {call for each in unwaited for call in _CALLS.get(each.method, ())}
@@ -97,8 +97,7 @@ def list_parted_moves(data: RunData) -> Iterator[Unmet]:
     Args:
         data: The run.
     """
-    is_straight = data.facts.remarks.has_straight_comment
-    for pair in moves.list_parted_moves(data.facts.tree, is_straight):
+    for pair in data.facts.list_parted_moves():
         next_stays = data.find_stays(pair.next_line, pair.next_line)
         for start, end in data.find_stays(pair.first_line, pair.first_line):
             following = next((stay for stay in next_stays if stay[0] >= end), None)
@@ -164,9 +163,7 @@ def _list_moves(data: RunData, calls: Set[Call]) -> Iterator[_Move]:
     yield from sorted(all_moves, key=lambda move: move.end)
 
 
-def _find_call(
-    data: RunData, move: _Move, fitting: list[moves.UnwaitedMove]
-) -> moves.UnwaitedMove | None:
+def _find_call(data: RunData, move: _Move, fitting: list[UnwaitedMove]) -> UnwaitedMove | None:
     """Return the call in the program's text that gave the command of a move.
 
     The result is None if several calls may have given it, or if the program may have cut the move off on purpose.
@@ -191,7 +188,7 @@ def _find_call(
     return calls[0] if len(calls) == 1 and is_at_once else None
 
 
-def _turns_as_asked(data: RunData, move: _Move, call: moves.UnwaitedMove) -> bool:
+def _turns_as_asked(data: RunData, move: _Move, call: UnwaitedMove) -> bool:
     """Return whether a call in the text turns a motor by the same angle as a move."""
     turns = data.facts.find_turns(call.line)
     unit_deg = 360.0 if turns and turns[1] == "rotations" else 1.0

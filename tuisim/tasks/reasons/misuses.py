@@ -9,8 +9,8 @@ import numpy as np
 
 from tuisim.engine.core.columns import COLOR_NAMES
 from tuisim.engine.core.conditions import COMPARE
-from tuisim.programs import idle_moves, uses
 from tuisim.programs.facts import LoopEnd
+from tuisim.programs.uses import LoneStop
 from tuisim.tasks.reasons.run_data import RunData, Series, list_distinct
 from tuisim.tasks.reasons.unmet import Unmet, name_goal, round_value
 
@@ -45,7 +45,7 @@ def list_stale_reads(data: RunData) -> Iterator[Unmet]:
     For example, `light = sensor.reflected_light_intensity` stands before `while light > 20`, not in the loop.
     """
     known = {end.line for end in data.facts.loop_ends if end.set_line}
-    for use in uses.list_stale_reads(data.facts.tree, data.facts.constants):
+    for use in data.facts.list_stale_reads():
         if use.line in known and _was_in_vain(data, use):
             continue
         for tick in data.find_read_ticks(use.read_line)[:_MAX_READINGS].tolist():
@@ -144,7 +144,7 @@ def list_lone_stops(data: RunData) -> Iterator[Unmet]:
 
     The `if` with the stop is in no `while` loop, and its condition was still false when it was tested.
     """
-    for stop in uses.list_lone_stops(data.facts.tree, data.facts.constants):
+    for stop in data.facts.list_lone_stops():
         read_ticks = data.find_read_ticks(stop.read_line)[:_MAX_READINGS]
         if np.diff(read_ticks).min(initial=data.hz) < _APART_S * data.hz:
             continue
@@ -153,7 +153,7 @@ def list_lone_stops(data: RunData) -> Iterator[Unmet]:
                 yield Unmet(tick / data.hz, stop.line, _describe_lone(data, stop, tick))
 
 
-def _is_unstopped(data: RunData, stop: uses.LoneStop, tick: int) -> bool:
+def _is_unstopped(data: RunData, stop: LoneStop, tick: int) -> bool:
     """Return whether the robot drove on after a reading, because the condition for its stop was not met then.
 
     The result is False if the program soon took another reading, or stopped the motors.
@@ -187,7 +187,7 @@ def _is_met(data: RunData, test: LoopEnd, tick: int) -> bool:
     return bool(COMPARE[test.operator](seen.values, test.limit).any())
 
 
-def _describe_lone(data: RunData, stop: uses.LoneStop, tick: int) -> str:
+def _describe_lone(data: RunData, stop: LoneStop, tick: int) -> str:
     text = "this line asked only once"
     test = stop.test
     seen = data.measure_ticks(test, np.array([tick])) if test else None
@@ -208,7 +208,7 @@ def list_stopping_loops(data: RunData) -> Iterator[Unmet]:
     The run was still in the loop at its end.
     """
     lines = data.records["line"]
-    for line, text, loop in idle_moves.list_stopping_loops(data.facts.tree):
+    for line, text, loop in data.facts.list_stopping_loops():
         is_inside = (lines >= loop.start) & (lines < loop.stop)
         if is_inside[-1] and not data.is_finished:
             yield Unmet(int(is_inside.argmax()) / data.hz, line, text)
@@ -222,7 +222,7 @@ def list_lost_values(data: RunData) -> Iterator[Unmet]:
 
     Functions that did not run are left out.
     """
-    for lost in uses.list_lost_values(data.facts.tree):
+    for lost in data.facts.list_lost_values():
         tick = _find_tick(data, *lost.lines)
         if tick is None and lost.call_line:
             tick = _find_tick(data, lost.call_line + 1, 1 << 31)

@@ -10,7 +10,6 @@ import numpy as np
 
 from tuisim.engine.core.conditions import COMPARE
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
-from tuisim.programs import remarks
 from tuisim.programs.facts import LoopEnd
 from tuisim.tasks.reasons.read_columns import LIGHT_COLUMNS
 from tuisim.tasks.reasons.run_data import RunData
@@ -95,7 +94,7 @@ def _extend_way(record: Array) -> Array:
 
 def list_spins(data: RunData) -> Iterator[Unmet]:
     """Yield a fault for each turn on the spot at a place where the program says that it drives straight on."""
-    for spin in remarks.list_spins(data.facts.tree, data.facts.remarks):
+    for spin in data.facts.remarks.list_spins():
         # The line after those that start motors is the one that waits.
         for start, end in data.find_stays(spin.first_line, spin.last_line + 1):
             way = data.records[start:end]
@@ -111,7 +110,7 @@ def list_spins(data: RunData) -> Iterator[Unmet]:
 
 def list_curves(data: RunData) -> Iterator[Unmet]:
     """Yield a fault for each move in a curve at a place where a comment says that the robot drives straight on."""
-    for curve in remarks.list_curves(data.facts.tree, data.facts.remarks):
+    for curve in data.facts.remarks.list_curves():
         for start, end in data.find_stays(curve.first_line, curve.last_line + 1):
             turned_deg = float(np.ptp(data.records["heading_deg"][start:end]))
             if turned_deg >= _MIN_TURN_DEG:
@@ -124,7 +123,7 @@ def list_wrong_sides(data: RunData) -> Iterator[Unmet]:
 
     It is the wrong side if the name of the function, or a comment, says left for a turn to the right, or the reverse.
     """
-    for turn in remarks.list_named_turns(data.facts.tree, data.facts.remarks):
+    for turn in data.facts.remarks.list_named_turns():
         spans = data.find_stays(turn.first_line, turn.last_line)
         ways = [_measure_turn(data.records[start:end]) for start, end in spans]
         # A positive turn is one to the left.
@@ -150,7 +149,7 @@ def _measure_turn(way: Array) -> float:
 def list_wrong_units(data: RunData) -> Iterator[Unmet]:
     """Yield each call that ran and whose numbers were probably meant in another unit or order."""
     lines = data.records["line"]
-    for wrong in remarks.list_wrong_units(data.facts.tree, data.facts.remarks):
+    for wrong in data.facts.remarks.list_wrong_units():
         ticks = np.flatnonzero(lines == wrong.line)
         is_stuck = not data.is_finished and lines[-1] == wrong.line
         if len(ticks) and (not wrong.is_endless or (is_stuck and _has_moved(data.records[ticks]))):

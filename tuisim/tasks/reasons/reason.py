@@ -268,7 +268,6 @@ def _find_lost(data: RunData, has_waited: bool) -> Iterator[Reason]:
         has_waited: Whether the program waited for a light sensor in vain. That it saw only one colour is then no
             further reason.
     """
-    from tuisim.programs.moves import find_steering
     from tuisim.tasks.reasons.lost_line import find_lost_lines
     from tuisim.tasks.reasons.one_colour import find_one_color
     from tuisim.tasks.reasons.unwatched import list_unwatched
@@ -281,7 +280,7 @@ def _find_lost(data: RunData, has_waited: bool) -> Iterator[Reason]:
     if run.telemetry.count < 2 or not data.decides_by_light:
         return
     for lost in find_lost_lines(data):
-        if line := find_steering(data.facts.tree, run.telemetry.record(lost.tick).line):
+        if line := data.facts.find_steering(run.telemetry.record(lost.tick).line):
             yield _describe_loss(data, lost, line)
     if not has_waited and (seen := find_one_color(data)):
         text = f"from here on {data.name_eye(seen.sensor)} saw only {seen.color}"

@@ -12,7 +12,7 @@ from tuisim.engine.core.columns import COLOR_NAMES
 from tuisim.engine.core.conditions import COMPARE
 from tuisim.engine.core.sensors.color import WHITE, LightRead, find_color_code
 from tuisim.programs.facts import ProgramThreshold
-from tuisim.programs.moves import WheelTurn, list_wheel_turns
+from tuisim.programs.moves import WheelTurn
 from tuisim.tasks.reasons.lost_line import MIN_READINGS, is_on_mat
 from tuisim.tasks.reasons.run_data import RunData, compute_turns_deg, list_distinct
 from tuisim.tasks.reasons.unmet import Unmet
@@ -32,7 +32,7 @@ _NEAR_DEG = 3.0
 
 def list_mistaken_turns(data: RunData) -> Iterator[Unmet]:
     """Yield the turns on the spot whose angle was probably meant for the robot, but turned the wheels, in order."""
-    turns = [_measure_turns(data, turn) for turn in list_wheel_turns(data.facts.tree)]
+    turns = [_measure_turns(data, turn) for turn in data.facts.list_wheel_turns()]
     yield from sorted((turn for turn in turns if turn), key=lambda turn: turn.time_s)
 
 
