@@ -65,8 +65,14 @@ class FieldFiles:
     @property
     def paths(self) -> tuple[Path, ...]:
         """All files of the mat, and the notes of their checksums."""
-        data = (self.pixels, *(path for _, path in self.sums))
-        return (*data, *map(_note_of, data))
+        return (*self._sizes, *map(_note_of, self._sizes))
+
+    @property
+    def _sizes(self) -> dict[Path, int]:
+        """The size of each file in bytes, that of the pixels first."""
+        width, height = self.width_px, self.height_px
+        sizes = {path: 12 * (width + disc) * (height + disc) for disc, path in self.sums}
+        return {self.pixels: 3 * width * height, **sizes}
 
     def is_for(self, diameters: Collection[int]) -> bool:
         """Return whether these are the files of a mat of the field's size, with sums for discs of these diameters."""
@@ -81,7 +87,7 @@ class FieldFiles:
         Missing files are left out.
         """
         identities = []
-        for path in (self.pixels, *(path for _, path in self.sums)):
+        for path in self._sizes:
             with suppress(OSError):
                 identities.append(_identity(path.stat()))
         return tuple(identities)
@@ -89,12 +95,7 @@ class FieldFiles:
     @property
     def are_sound(self) -> bool:
         """Whether the cache still has all files, undamaged; if so, they are marked as used now."""
-        width, height = self.width_px, self.height_px
-        files = [(self.pixels, 3 * width * height)]
-        files += [
-            (path, 12 * (width + diameter) * (height + diameter)) for diameter, path in self.sums
-        ]
-        return all(_in_use(path, size) for path, size in files)
+        return all(_in_use(path, size) for path, size in self._sizes.items())
 
     def to_plain(self) -> dict[str, Any]:
         """Return the files as JSON-compatible data."""
@@ -123,9 +124,8 @@ class FieldFiles:
         """
         import numpy as np
 
-        shape = (self.height_px, self.width_px, 3)
-        data = _open_data(self.pixels, shape[0] * shape[1] * 3, is_copied=True)
-        return np.frombuffer(data, np.uint8).reshape(shape)
+        data = _open_data(self.pixels, self._sizes[self.pixels], is_copied=True)
+        return np.frombuffer(data, np.uint8).reshape(self.height_px, self.width_px, 3)
 
     def open_field(self, *, has_floor: bool = False, is_copied: bool = False) -> Field:
         """Return the mat, with its files mapped into memory. Any process may call this.
@@ -140,13 +140,9 @@ class FieldFiles:
             BackgroundError: a file is missing, for example because the cache evicted it, or incomplete.
         """
         width, height = self.width_px, self.height_px
-        pixels = _open_data(self.pixels, 3 * width * height, is_copied)
-        sums = {
-            diameter: _open_data(
-                path, 12 * (width + diameter) * (height + diameter), is_copied
-            ).cast("I")
-            for diameter, path in self.sums
-        }
+        data = {path: _open_data(path, size, is_copied) for path, size in self._sizes.items()}
+        pixels = data[self.pixels]
+        sums = {diameter: data[path].cast("I") for diameter, path in self.sums}
         return Field(
             width,
             height,
@@ -186,16 +182,10 @@ class FieldFiles:
         stem = f"{hashlib.sha256(content).hexdigest()[:24]}-{how}{_LAYOUT}"
         sums = tuple((diameter, folder / f"{stem}-{diameter}.sums") for diameter in sizes)
         files = cls(FIELD_WIDTH_MM, FIELD_HEIGHT_MM, folder / f"{stem}.rgb", sums)
-        missing = [
-            (diameter, path) for diameter, path in sums if not _in_use(path, _sums_size(diameter))
-        ]
-        if not _in_use(files.pixels, 3 * FIELD_WIDTH_MM * FIELD_HEIGHT_MM) or missing:
+        missing = {path for path, size in files._sizes.items() if not _in_use(path, size)}
+        if missing:
             _make(files, missing, decode(content, image, fit))
         return files
-
-
-def _sums_size(diameter: int) -> int:
-    return (FIELD_HEIGHT_MM + diameter) * (FIELD_WIDTH_MM + diameter) * 3 * 4
 
 
 def _in_use(path: Path, size: int) -> bool:
@@ -252,15 +242,16 @@ def _checksum(descriptor: int) -> int:
     return checksum
 
 
-def _make(files: FieldFiles, missing: list[tuple[int, Path]], pixels: NDArray[np.uint8]) -> None:
+def _make(files: FieldFiles, missing: Collection[Path], pixels: NDArray[np.uint8]) -> None:
     """Write the pixels and the missing sums into the cache, then evict old files."""
     folder = files.pixels.parent
     try:
         make_private_folder(folder)
         _store(files.pixels, pixels)
-        for diameter, path in missing:
-            _store(path, _disc_sums(pixels, diameter))
-        _trim(folder, {files.pixels, *(path for _, path in files.sums)})
+        for diameter, path in files.sums:
+            if path in missing:
+                _store(path, _disc_sums(pixels, diameter))
+        _trim(folder, files._sizes)
     except OSError as error:
         raise BackgroundError(
             f"the mat cannot be prepared: {error.strerror or error}",
@@ -320,7 +311,7 @@ def _by_age(folder: Path) -> Iterator[tuple[float, Path]]:
                 yield path.stat().st_mtime, path.with_suffix("")
 
 
-def _trim(folder: Path, keep: set[Path]) -> None:
+def _trim(folder: Path, keep: Collection[Path]) -> None:
     """Remove the least recently used files beyond MAX_CACHED_FILES, and temporary files of killed processes.
 
     Files in `keep` are never removed.
