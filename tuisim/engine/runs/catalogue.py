@@ -340,16 +340,12 @@ def _insert(connection: sqlite3.Connection, info: RunInfo) -> int:
     number = info.number if is_sound and not taken else None
     # The seed is stored as text, because it may exceed the integers of SQLite.
     changed = {"number": number, "seed": str(info.seed), "end": info.end or ""}
-    row = [_make_storable(changed.get(name, getattr(info, name))) for name in _NAMES]
+    row = [changed.get(name, getattr(info, name)) for name in _NAMES]
+    # Lone surrogates, which stand for invalid bytes of a file name, are replaced by `?`.
+    row = [
+        cell.encode("utf-8", "replace").decode() if isinstance(cell, str) else cell for cell in row
+    ]
     return int(connection.execute(_INSERT, row).lastrowid or 0)
-
-
-def _make_storable(value: object) -> object:
-    """Return a value in a form that SQLite can store.
-
-    In a text, lone surrogates, which stand for invalid bytes of a file name, are replaced by `?`.
-    """
-    return value.encode("utf-8", "replace").decode() if isinstance(value, str) else value
 
 
 def _fetch_rows(connection: sqlite3.Connection) -> list[RunInfo]:

@@ -103,18 +103,19 @@ def find_standstill(telemetry: TelemetryView, spec: RunSpec) -> Standstill | Non
     until = _find_next_move(records, last, len(records) - 1)
     kinds = sorted({stretch.at for stretch in stretches}, reverse=True)
 
-    def time_s(tick: int) -> float:
-        return compute_due_ns(tick, spec.profile.tick_hz) / NS_PER_S
-
     return Standstill(
         " and ".join(kinds),
         1 + sum(tick is not None for tick in moved),
         # The robot already stood at the end of the tick before the stretch.
-        time_s(stretches[0].start - 1),
-        None if until is None else time_s(until - 1),
-        time_s(sum(stretch.end - stretch.start for stretch in stretches)),
+        _find_time_s(stretches[0].start - 1, spec),
+        None if until is None else _find_time_s(until - 1, spec),
+        _find_time_s(sum(stretch.end - stretch.start for stretch in stretches), spec),
         spec.world.floor,
     )
+
+
+def _find_time_s(tick: int, spec: RunSpec) -> float:
+    return compute_due_ns(tick, spec.profile.tick_hz) / NS_PER_S
 
 
 def touches_solid(pose: PoseTuple, spec: RunSpec) -> bool:
@@ -167,16 +168,11 @@ def describe_touched(solids: Solids, records: NDArray[Any], tick: int, spec: Run
         tick: The index of a record.
         spec: The run.
     """
-    gaps = solids.measure_gaps_mm(_build_pose(records, tick))
+    gaps = solids.measure_gaps_mm(records[_POSE][tick].item())
     number = next((number for number, gap in enumerate(gaps) if gap < _CONTACT_MM), None)
     if number is None:
         return ""
     return WALL if spec.world.walls and number < _WALLS else "an obstacle"
-
-
-def _build_pose(records: NDArray[Any], tick: int) -> PoseTuple:
-    x_mm, y_mm, heading_deg = records[_POSE][tick].item()
-    return x_mm, y_mm, heading_deg
 
 
 def _find_next_move(records: NDArray[Any], start: int, end: int) -> int | None:
@@ -262,14 +258,11 @@ def find_push(telemetry: TelemetryView, spec: RunSpec) -> Push | None:
         return None
     start, end, _ = pushes[0]
 
-    def time_s(tick: int) -> float:
-        return compute_due_ns(tick, spec.profile.tick_hz) / NS_PER_S
-
     return Push(
         describe_touched(solids, records, start, spec),
         len(pushes),
-        time_s(start - 1),
-        time_s(end - 1),
+        _find_time_s(start - 1, spec),
+        _find_time_s(end - 1, spec),
         sum(push[2] for push in pushes),
     )
 

@@ -364,11 +364,9 @@ def _find_first_row(
 
 
 def _diff_setup(first: StoredRun, second: StoredRun) -> Iterator[tuple[str, str, str]]:
-    plain = dump_run(first.spec), dump_run(second.spec)
-    names = {**_flatten(plain[0]), **_flatten(plain[1])}
-    values = _flatten(plain[0]), _flatten(plain[1])
-    for name in names:
-        left, right = (str(settings.get(name, "—")) for settings in values)
+    before, now = _flatten(dump_run(first.spec)), _flatten(dump_run(second.spec))
+    for name in before | now:
+        left, right = (str(settings.get(name, "—")) for settings in (before, now))
         if left != right:
             yield name, left, right
     for name, label in (("name", "program name"), ("prelude", "predefined names")):

@@ -346,13 +346,7 @@ class RunHandle:
         tick = max(0, self.telemetry.count - 1)
         time_ns = compute_due_ns(tick, self.spec.profile.tick_hz)
         if falsified:
-            return Ended(
-                End.FALSIFIED,
-                tick,
-                time_ns,
-                1,
-                describe_falsified(falsified),
-            )
+            return Ended(End.FALSIFIED, tick, time_ns, 1, describe_falsified(falsified))
         if self._exceeded:
             return Ended(End.OUTPUT_LIMIT, tick, time_ns, 1, self._exceeded)
         line = find_stuck_line(self.folder, self.program.file)
@@ -360,11 +354,8 @@ class RunHandle:
             where = f" in line {line}, where it was stuck" if line else ""
             return Ended(End.STOPPED, tick, time_ns, summary=f"stopped{where}", error_line=line)
         if self._stack_asked:
-            summary = (
-                f"stuck in line {line}: no simulated time passed"
-                if line
-                else "stuck: no simulated time passed"
-            )
+            where = f" in line {line}" if line else ""
+            summary = f"stuck{where}: no simulated time passed"
             return Ended(End.STALLED, tick, time_ns, 1, summary, error_line=line)
         status = self._process.wait()
         return Ended(

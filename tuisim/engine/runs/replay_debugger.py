@@ -16,7 +16,6 @@ from tuisim.engine.runs.temporary import create_owned_folder
 if TYPE_CHECKING:
     from tuisim.engine.runs.handle import RunHandle
     from tuisim.engine.runs.recorded_run import Recording
-    from tuisim.engine.runs.store import RunStore
 
 FIRST_WINDOW_TICKS = 200
 """Number of ticks before an instant in which previous lines are searched first; the search window grows."""
@@ -173,6 +172,7 @@ class ReplayDebugger:
 
     def _go(self, recording: Recording, at: Position, traced_from: int) -> None:
         from tuisim.engine.runs.handle import RunOptions, start_run
+        from tuisim.engine.runs.store import RunStore
 
         self.busy = True
         self._aim = at
@@ -209,7 +209,7 @@ class ReplayDebugger:
         try:
             self._folder = create_owned_folder()
             self.run = start_run(
-                recording.program, recording.first_spec, options, _open_scratch(self._folder)
+                recording.program, recording.first_spec, options, RunStore(self._folder)
             )
         except (TuisimError, OSError) as error:
             self.busy = False
@@ -295,9 +295,3 @@ class ReplayDebugger:
             remove_tree(self._folder)
         self.run = self._folder = self._paused = self._of = None
         self.busy = False
-
-
-def _open_scratch(folder: Path) -> RunStore:
-    from tuisim.engine.runs.store import RunStore
-
-    return RunStore(folder)

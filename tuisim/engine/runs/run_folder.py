@@ -257,11 +257,6 @@ def build_run_data(
     }
 
 
-def run_document(data: Mapping[str, Any]) -> bytes:
-    """Return the contents of a `run.json` as JSON bytes, ready to be written."""
-    return json.dumps(data, indent=1, ensure_ascii=True).encode() + b"\n"
-
-
 def write_run_file(folder: Path, data: Mapping[str, Any]) -> None:
     """Write `run.json` to a run folder, or replace it.
 
@@ -274,7 +269,7 @@ def write_run_file(folder: Path, data: Mapping[str, Any]) -> None:
         remove_tree(path)
     try:
         with replacing(path, owner_only=True, follow_links=False) as handle:
-            handle.write(run_document(data))
+            handle.write(json.dumps(data, indent=1).encode() + b"\n")
     except OSError as error:
         raise LogError(f"cannot write: {error.strerror or error}", file=str(path)) from error
 

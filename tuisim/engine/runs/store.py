@@ -206,7 +206,11 @@ class RunStore:
         for word in words:
             if word.split() != [word]:
                 raise LogError(f"{word!r} is not a tag", "a tag is one word without blanks")
-        self._edit(run_id, tags=words)
+        folder = self.folder(run_id)
+        if not os.path.isdir(folder):
+            raise LogError(f"no run {run_id!r}", file=str(self._runs))
+        with lock_home(self.home):
+            write_run_file(folder, {**read_run_file(folder), "tags": words})
         self._catalogue.update(run_id, tags=" ".join(words))
 
     def remove(self, run_id: str) -> None:
@@ -343,13 +347,6 @@ class RunStore:
                     f"runs cannot be stored here: {what}", HOME_HINT, file=str(self.home)
                 ) from error
             return run_id, folder, lock_fd
-
-    def _edit(self, run_id: str, **changes: Any) -> None:
-        folder = self.folder(run_id)
-        if not os.path.isdir(folder):
-            raise LogError(f"no run {run_id!r}", file=str(self._runs))
-        with lock_home(self.home):
-            write_run_file(folder, {**read_run_file(folder), **changes})
 
     def _scan(self) -> Iterator[RunInfo]:
         return filter(None, map(self._read_info, sorted(self._runs.glob("*"))))

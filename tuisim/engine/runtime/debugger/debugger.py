@@ -5,7 +5,7 @@ from __future__ import annotations
 import types
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from sys import _getframe
-from typing import TYPE_CHECKING, Any, assert_never
+from typing import TYPE_CHECKING, Any
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine import protocol
@@ -54,25 +54,6 @@ class Step:
 
 ENDLESS_DEPTH = 1 << 30
 """Larger than the depth of any stack."""
-
-
-def build_step(how: LineStep, task: ScheduledThread, depth: int) -> Step:
-    """Return the step that starts at the line where a thread is paused.
-
-    Args:
-        how: Whether to step into calls, over them, or out of the function.
-        task: The thread that is paused at the line.
-        depth: Number of open calls of the program's own code.
-    """
-    match how:
-        case LineStep.INTO:
-            return Step(task, ENDLESS_DEPTH)
-        case LineStep.OVER:
-            return Step(task, depth)
-        case LineStep.OUT:
-            return Step(task, depth - 1)
-        case _:
-            assert_never(how)
 
 
 NEXT_LINE = Step(None, ENDLESS_DEPTH)
@@ -159,11 +140,13 @@ class Debugger:
                 self._forget_goals()
                 # A paused run waits for commands in the paused thread, so this frame belongs to that thread.
                 depth = self._tracer.count_depth(_getframe())
-                self._step = (
-                    build_step(how, self._scheduler.current, depth)
-                    if steering.holding
-                    else NEXT_LINE
-                )
+                depths = {
+                    LineStep.INTO: ENDLESS_DEPTH,
+                    LineStep.OVER: depth,
+                    LineStep.OUT: depth - 1,
+                }
+                step = Step(self._scheduler.current, depths[how])
+                self._step = step if steering.holding else NEXT_LINE
                 steering.resume()
             case protocol.RunToLine(line=line):
                 self._forget_goals()
