@@ -488,7 +488,7 @@ class Child:
         self._telemetry.close()
         if self._motors is not None:
             self._motors.close(self._telemetry.count)
-        self._output.close()
+        self._output.writer.close()
         self._session.readings.close()
         self._commands.close()
         self._channel.send(protocol.Wheels(*(read() for read in self._session.wheel_registers)))

@@ -224,10 +224,6 @@ class OutputRecorder:
         """Write one row with a given tick, time and source line, not with the present ones."""
         self.writer.write(text.encode(), tick, time_ns, line, stream)
 
-    def close(self) -> None:
-        """Close the file of the output, and cut off its unused space."""
-        self.writer.close()
-
 
 class LineStream(io.TextIOBase):
     """The program's `sys.stdout` or `sys.stderr`, which records whole lines.
@@ -306,10 +302,6 @@ class LineStream(io.TextIOBase):
             self._output.row(line, self._stream)
         self._output.after_write()
         return len(text)
-
-    def put_bytes(self, data: bytes) -> None:
-        """Write bytes, decoded as UTF-8; the bytes of one character may come in several calls."""
-        self._buffer.put(data)
 
     def flush(self) -> None:
         """Do nothing: whole lines are written already, and a partial line waits for its end."""

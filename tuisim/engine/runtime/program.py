@@ -226,7 +226,7 @@ class ProgramRunner:
         self._scheduler = scheduler
         self._leave = leave
         self.stdout, self.stderr = LineStream(output), LineStream(output, Stream.STDERR)
-        self.raw = RawOutput(self.stdout.put_bytes, self.stderr.put_bytes)
+        self.raw = RawOutput(self.stdout.buffer.put, self.stderr.buffer.put)
         self.hooks = ErrorHooks(session, output, self.stderr, lambda: self._config.program.text)
         self._module = types.ModuleType("__main__")
         self._prelude_error: BaseException | None = None

@@ -136,17 +136,10 @@ class Scheduler:
         self._on_change: list[ScheduledThread] = []
         self._order = 0
         self._alive: list[ScheduledThread] = []
-        session.sleep_threaded = self.sleep_until
+        session.sleep_threaded = self.wait
         session.spawn_daemon = self.spawn_daemon
 
     # Waiting
-
-    def sleep_until(self, until: int, on_change: bool = False) -> None:
-        """Block the current thread until a simulated time in ns.
-
-        With `on_change`, the wait ends earlier if a motor ends a move before that time.
-        """
-        self.wait(until, on_change)
 
     def wait(self, until: int, on_change: bool = False, queue: Queue | None = None) -> bool:
         """Block the current thread until a time, or until something else ends the wait.

@@ -142,7 +142,7 @@ class Session:
         self.debugger: DebugHooks | None = None
         self.make_debugger: Callable[[], DebugHooks] | None = None
         """Set once there is a program to debug."""
-        self.sleep_threaded: Callable[[int, bool], None] | None = None
+        self.sleep_threaded: Callable[[int, bool], object] | None = None
         """Set by the scheduler: blocks until a time (or a motor change) while other threads run."""
         self.spawn_daemon: Callable[[Callable[[], None]], None]
         """Set by the scheduler: runs a function in the background while the program continues."""

@@ -27,10 +27,22 @@ MAX_SLEEP_S = 9_000_000_000
 """Longest sleep, because the real functions store nanoseconds in 63 bits."""
 
 
+def _build_wall_clock(session: Session) -> Callable[[], float]:
+    """Return a function that reads the simulated time of day, in seconds since 1970, which costs some time."""
+    cost = session.sim.spec.profile.clock_read_ns
+
+    def wall() -> float:
+        session.charge(cost)
+        return EPOCH_S + session.now / NS_PER_S
+
+    return wall
+
+
 def patch_time(session: Session) -> None:
     """Replace the functions of `time` by simulated ones; modules that have imported them before keep the real ones."""
     profile = session.sim.spec.profile
     cost = profile.clock_read_ns
+    wall = _build_wall_clock(session)
     real_sleep = time.sleep
 
     def clock_ns() -> int:
@@ -44,10 +56,6 @@ def patch_time(session: Session) -> None:
     def wall_ns() -> int:
         session.charge(cost)
         return EPOCH_S * NS_PER_S + session.now
-
-    def wall() -> float:
-        session.charge(cost)
-        return EPOCH_S + session.now / NS_PER_S
 
     @waits_for(Wait.SLEEP)
     def sleep(seconds: Any) -> None:
@@ -72,24 +80,13 @@ def patch_time(session: Session) -> None:
 
 
 def _patch_calendar(wall: Callable[[], float]) -> None:
-    localtime = time.localtime
-    gmtime = time.gmtime
-    ctime = time.ctime
-    strftime = time.strftime
-    asctime = time.asctime
+    localtime, asctime, strftime = time.localtime, time.asctime, time.strftime
 
-    replace(
-        time,
-        "localtime",
-        lambda seconds=None: localtime(wall() if seconds is None else seconds),
-        (0, 1),
-    )
-    replace(
-        time, "gmtime", lambda seconds=None: gmtime(wall() if seconds is None else seconds), (0, 1)
-    )
-    replace(
-        time, "ctime", lambda seconds=None: ctime(wall() if seconds is None else seconds), (0, 1)
-    )
+    def at_present(real: Callable[[float], Any]) -> Callable[..., Any]:
+        return lambda seconds=None: real(wall() if seconds is None else seconds)
+
+    for name in ("localtime", "gmtime", "ctime"):
+        replace(time, name, at_present(getattr(time, name)), (0, 1))
     replace(time, "asctime", lambda *when: asctime(*when or (localtime(wall()),)), (0, 1))
     replace(
         time, "strftime", lambda form, *when: strftime(form, *when or (localtime(wall()),)), (1, 2)
@@ -135,12 +132,8 @@ def patch_datetime(session: Session, folder: Callable[[], str]) -> None:
 
 def _build_simulated_datetime(session: Session, module: types.ModuleType) -> types.ModuleType:
     """Return a copy of `datetime` whose `now`, `utcnow` and `today` return simulated time."""
-    cost = session.sim.spec.profile.clock_read_ns
     real_datetime, real_date = module.datetime, module.date
-
-    def seconds() -> float:
-        session.charge(cost)
-        return EPOCH_S + session.now / NS_PER_S
+    seconds = _build_wall_clock(session)
 
     class LikeTheReal(type):
         def __instancecheck__(cls, instance: object) -> bool:
@@ -241,13 +234,9 @@ def finish_resource(session: Session, module: types.ModuleType) -> None:
 
 def finish_pandas(session: Session, module: types.ModuleType) -> None:
     """Patch pandas after its import, so that its present time is simulated: its compiled code does not call `time`."""
-    cost = session.sim.spec.profile.clock_read_ns
     stamp = module.Timestamp
     period = module.Period
-
-    def seconds() -> float:
-        session.charge(cost)
-        return EPOCH_S + session.now / NS_PER_S
+    seconds = _build_wall_clock(session)
 
     def now(cls: Any, tz: Any = None) -> Any:
         return cls.fromtimestamp(seconds(), tz)

@@ -75,33 +75,24 @@ def _refuse_alarm() -> NoReturn:
 
 
 def _patch_sending(interrupt: Interrupt) -> None:
-    real_kill, real_raise, real_interrupt = (
-        os.kill,
-        wallclock.signals.raise_signal,
-        _thread.interrupt_main,
+    def divert(module: types.ModuleType, name: str, takes: tuple[int, int], is_ours: Any) -> None:
+        """Replace a function by one that sends the interrupt where `is_ours` is true of its arguments."""
+        real = getattr(module, name)
+        replace(
+            module,
+            name,
+            lambda *given: interrupt.send() if is_ours(*given) else real(*given),
+            takes,
+        )
+
+    divert(
+        os,
+        "kill",
+        (2, 2),
+        lambda pid, number: number == signal.SIGINT and pid == wallclock.getpid(),
     )
-
-    def kill(pid: Any, number: Any) -> None:
-        if number == signal.SIGINT and pid == wallclock.getpid():
-            interrupt.send()
-        else:
-            real_kill(pid, number)
-
-    def raise_signal(number: Any) -> None:
-        if number == signal.SIGINT:
-            interrupt.send()
-        else:
-            real_raise(number)
-
-    def interrupt_main(number: Any = signal.SIGINT) -> None:
-        if number == signal.SIGINT:
-            interrupt.send()
-        else:
-            real_interrupt(number)
-
-    replace(os, "kill", kill, (2, 2))
-    replace(signal, "raise_signal", raise_signal, (1, 1))
-    replace(_thread, "interrupt_main", interrupt_main, (0, 1))
+    divert(signal, "raise_signal", (1, 1), lambda number: number == signal.SIGINT)
+    divert(_thread, "interrupt_main", (0, 1), lambda number=signal.SIGINT: number == signal.SIGINT)
 
 
 def _patch_handlers(interrupt: Interrupt) -> None:
