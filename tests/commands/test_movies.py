@@ -25,7 +25,7 @@ from tuisim.engine.runs.store import RunStore
 from tuisim.pictures.movies.clip import END_MS, ClipRun
 from tuisim.pictures.movies.files import SMALL_BYTES, make_small_movie
 from tuisim.pictures.movies.painter import FramePainter
-from tuisim.pictures.scene.pen import build_pen_trace
+from tuisim.pictures.scene.pen import Piece
 from tuisim.pictures.scene.pictures import fit_view
 from tuisim.pictures.scene.robot import COLORED
 from tuisim.pictures.scene.view import Viewport
@@ -263,7 +263,7 @@ def test_damaged_records_leave_only_their_frames_out_of_a_movie(
     records[field][[0, 50, 100]] = value
     path.write_bytes(content)
     # A line to a point far away takes minutes to draw.
-    piece = build_pen_trace(SPEC, records)
+    piece = Piece.from_run(SPEC, records)
     assert not (np.abs([piece.xs_mm, piece.ys_mm]) > 10_000).any()
     done = here(
         "runs", "movie", "last", "--out", "a.gif", "--fps", "2", "--panels", "world,chart,arrays"

@@ -10,7 +10,6 @@ import numpy as np
 from tuisim.analysis.traces import DISTANCE
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError, printable
-from tuisim.pictures.charts.bands import build_band_span
 from tuisim.pictures.charts.layout import ChartData, Span
 from tuisim.pictures.charts.sample_chart import build_line, build_path_chart
 
@@ -95,6 +94,6 @@ def _build_path_chart(
 def build_spans(bands: Iterable[Band]) -> tuple[Span, ...]:
     """Return bands as shaded ranges of a chart over time."""
     return tuple(
-        build_band_span(band.variable, band.start_s, band.stop_s, band.level, band.grey)
+        Span.of_band(band.variable, band.start_s, band.stop_s, band.level, band.grey)
         for band in bands
     )

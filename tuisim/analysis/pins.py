@@ -92,12 +92,19 @@ class Picture:
     rings: tuple[Ring, ...] = ()
     dots: tuple[Dot, ...] = ()
 
-
-def encode_picture(picture: Image) -> str:
-    """Return a picture as a data URL for the `src` of an `img`."""
-    content = io.BytesIO()
-    picture.save(content, "png", optimize=True)
-    return encode_data("png", content.getvalue())
+    @classmethod
+    def from_image(
+        cls,
+        text: str,
+        image: Image,
+        view: Viewport,
+        rings: tuple[Ring, ...] = (),
+        dots: tuple[Dot, ...] = (),
+    ) -> Picture:
+        """Return a picture of the world that was drawn as an image; see the attributes."""
+        content = io.BytesIO()
+        image.save(content, "png", optimize=True)
+        return cls(text, encode_data("png", content.getvalue()), image.size, view, rings, dots)
 
 
 def encode_data(kind: str, content: bytes) -> str:

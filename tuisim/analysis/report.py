@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from tuisim.analysis.chart import View, build_chart, build_spans
 from tuisim.analysis.model import AnalysisModel
-from tuisim.analysis.pins import Picture, Pin, encode_data, encode_picture, place_pins
+from tuisim.analysis.pins import Picture, Pin, encode_data, place_pins
 from tuisim.analysis.source import LogRequest, OpenedLog
 from tuisim.base.errors import ExportError, LogError, listed
 from tuisim.base.source import source_lines
@@ -198,7 +198,7 @@ def _draw_world(run: StoredRun, pins: Sequence[Pin], *, many: bool) -> Picture:
     which = f"run {run.number}: " if many else ""
     text = f"{which}the mat {mat} and the robot at its end pose; its path in orange, from the ring"
     text += "; numbers: where goals were met (✓) or missed (✗)" if pins else ""
-    return Picture(text, encode_picture(picture), picture.size, view, place_pins(pins, view))
+    return Picture.from_image(text, picture, view, place_pins(pins, view))
 
 
 def _find_mat_name(run: StoredRun) -> str:

@@ -31,7 +31,7 @@ from tuisim.notebook.cell_output import CellOutput
 from tuisim.notebook.display import Scene, Stage, start_record
 from tuisim.notebook.image_log import SENT_DATA, ArrayReader, ImageLog, parse_side
 from tuisim.notebook.old_formats import format_sent
-from tuisim.pictures.scene.pen import Piece, build_pen_trace
+from tuisim.pictures.scene.pen import Piece
 from tuisim.programs.plugged_words import list_parts
 from tuisim.settings.presses import press_actions
 
@@ -498,7 +498,7 @@ class _Screen:
                 self._samples += list_samples((row,))
                 self._position = after
         last = run.telemetry.last() or start_record(cell.spec)
-        traces = (*cell.traces, build_pen_trace(cell.spec, run.telemetry.array()))
+        traces = (*cell.traces, Piece.from_run(cell.spec, run.telemetry.array()))
         self._stage.show(
             Scene(cell.spec, cell.files, cell.program, last, traces, self._samples, run=run), status
         )

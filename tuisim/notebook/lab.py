@@ -401,7 +401,7 @@ class Lab:
         view: AppView | None,
     ) -> None:
         from tuisim.notebook.cell_run import CellRun, run_cell
-        from tuisim.pictures.scene.pen import build_pen_trace
+        from tuisim.pictures.scene.pen import Piece
 
         assert plan.program is not None
         cell = CellRun(
@@ -434,7 +434,7 @@ class Lab:
             if self._last is not None:
                 self._traces = (
                     *self._traces,
-                    build_pen_trace(self._last.spec, self._last.telemetry.array()),
+                    Piece.from_run(self._last.spec, self._last.telemetry.array()),
                 )
 
     def _build_scene(self, plan: _CellPlan) -> tuple[Scene, str]:

@@ -10,8 +10,8 @@ import pytest
 
 from tests.cases import cases
 from tuisim.pictures.charts import axes
-from tuisim.pictures.charts.bands import build_band_span
 from tuisim.pictures.charts.canvas import TextRun, build_style, draw_canvas
+from tuisim.pictures.charts.layout import Span
 from tuisim.pictures.charts.text_chart import ChartPainter, ChartPicture, ChartState, format_values
 from tuisim.pictures.charts.traces import Traces
 
@@ -209,7 +209,7 @@ def test_the_chart_names_each_drawn_trace(ticked: tuple[str, ...]) -> None:
 @pytest.mark.parametrize("other", ["way_mm", ""])
 def test_names_of_bands_have_the_colour_of_their_curve_beside_others(other: str) -> None:
     made = traces(*filter(None, ("Colour", other)))
-    spans = (build_band_span("Colour", 1.5, 3.0, 50.0, ""),)
+    spans = (Span.of_band("Colour", 1.5, 3.0, 50.0, ""),)
     lines = ChartPainter().paint(made, ChartState(spans=spans), 80, 16).lines
     (color,) = {
         style.color for line in lines for part, style in line if part == "50" and style.bgcolor

@@ -10,7 +10,7 @@ from tests.running import Run
 from tuisim.engine.core.geometry import Pose, world_point
 from tuisim.engine.core.spec import PenSpec, RobotSpec
 from tuisim.pictures.scene.painter import SceneState
-from tuisim.pictures.scene.pen import Piece, build_pen_trace, parse_pen_color, place_pen_mm
+from tuisim.pictures.scene.pen import Piece, parse_pen_color, place_pen_mm
 from tuisim.pictures.scene.view import Viewport
 
 
@@ -78,7 +78,7 @@ def test_a_pen_trace_covers_only_the_way_driven_with_the_pen_down(run: Run) -> N
     program = "tank_drive.on_for_seconds(SpeedPercent(50), SpeedPercent(50), 1)"
     for down, parts in ((False, 0), (True, 1)):
         done = run(program, pen=PenSpec(down=down), background="Empty_Map")
-        trace = build_pen_trace(done.run.spec, done.run.telemetry.array())
+        trace = Piece.from_run(done.run.spec, done.run.telemetry.array())
         drawn = np.isfinite(trace.xs_mm)
         assert np.count_nonzero(np.diff(drawn, prepend=False) & drawn) == parts
     start, end = done.run.telemetry.record(0), done.run.telemetry.last()

@@ -18,10 +18,7 @@ from tuisim.logs.derived import add_named_columns
 from tuisim.logs.log import Log
 from tuisim.pictures.charts.files import (
     CHART_FORMATS,
-    Size,
-    describe_limits,
     find_format,
-    parse_size,
     save_chart,
 )
 from tuisim.settings.command_line import Arguments
@@ -41,9 +38,7 @@ def plot(arguments: Arguments) -> int:
     """
     target = Path(arguments.out) if arguments.out else None
     kind = find_format(target) if target else CHART_FORMATS[".txt"]
-    size = (
-        _parse_option_size(arguments.size, kind.smallest, kind.largest) if arguments.size else None
-    )
+    size = kind.parse_size(arguments.size) if arguments.size else None
     log = open_single(arguments)
     model = _build_model(log, arguments)
     view = View(arguments.facets, arguments.marks, against=_choose_pair(log, model, arguments))
@@ -72,14 +67,6 @@ def _check_visible(model: AnalysisModel) -> None:
             f"they are between {low:g} s and {high:g} s",
             file=model.log.title,
         )
-
-
-def _parse_option_size(text: str, smallest: Size, largest: Size) -> Size:
-    size = parse_size(text, smallest, largest)
-    if size is None:
-        allowed = f"width and height, {describe_limits(smallest, largest)}"
-        raise ConfigError(f"cannot draw a chart of {text!r}", allowed, key="--size")
-    return size
 
 
 def _build_model(log: Log, arguments: Arguments) -> AnalysisModel:
@@ -120,7 +107,7 @@ def _choose_pair(log: Log, model: AnalysisModel, arguments: Arguments) -> tuple[
     return arguments.against, y
 
 
-def _show(model: AnalysisModel, view: View, size: Size | None) -> None:
+def _show(model: AnalysisModel, view: View, size: tuple[int, int] | None) -> None:
     """Print the chart, in colour if the terminal supports it."""
     from tuisim.pictures.charts.text_chart import draw_text
 

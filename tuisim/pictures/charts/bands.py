@@ -31,12 +31,6 @@ FREE = " ┈"
 """Characters over which a name may be written."""
 
 
-def build_band_span(name: str, start: float, stop: float, level: float, grey: str) -> Span:
-    """Return a band as a shaded range of the time axis, named by its level and its grey."""
-    text = f"{level:.4g}"
-    return Span(start, stop, (f"{text} {grey}".rstrip(), text), name)
-
-
 def find_spans(trace: Trace, light: Light) -> tuple[Span, ...]:
     """Return the bands of a trace as ranges of the time axis; none if the trace has more than `MAX_SAMPLES` points.
 
@@ -51,7 +45,7 @@ def find_spans(trace: Trace, light: Light) -> tuple[Span, ...]:
     names = ["" if trace.scale else grey for grey in levels.greys]
     rows = zip(*ends, levels.level.tolist(), names, strict=True)
     return tuple(
-        build_band_span(trace.name, start_s, stop_s, level, name)
+        Span.of_band(trace.name, start_s, stop_s, level, name)
         for start_s, stop_s, level, name in rows
     )
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from tuisim.base.atomic import replacing
 from tuisim.base.data_class import dataclass
-from tuisim.base.errors import ExportError
+from tuisim.base.errors import ConfigError, ExportError
 from tuisim.engine.core.css_colors import Rgb
 from tuisim.logs.export import check_place
 from tuisim.pictures.charts.layout import (
@@ -66,6 +66,18 @@ class ChartFormat:
     unit: str
     finer: Size = (1, 1)
     """Resolution: subdivisions of a unit."""
+
+    def parse_size(self, text: str) -> Size:
+        """Return the size of a chart that a text such as `800x600` stands for.
+
+        Raises:
+            ConfigError: it is no size, or not within the limits.
+        """
+        size = parse_size(text, self.smallest, self.largest)
+        if size is None:
+            allowed = f"width and height, {describe_limits(self.smallest, self.largest)}"
+            raise ConfigError(f"cannot draw a chart of {text!r}", allowed, key="--size")
+        return size
 
 
 def _encode_svg(chart: ChartData, size: Size) -> bytes:

@@ -71,6 +71,12 @@ class Span:
     name: str
     """Name of the variable whose band the span is."""
 
+    @classmethod
+    def of_band(cls, name: str, start: float, stop: float, level: float, grey: str) -> Span:
+        """Return a band as a shaded range of the time axis, named by its level and its grey."""
+        text = f"{level:.4g}"
+        return cls(start, stop, (f"{text} {grey}".rstrip(), text), name)
+
 
 @dataclass(frozen=True, slots=True)
 class ChartData:

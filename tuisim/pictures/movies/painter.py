@@ -28,7 +28,7 @@ from tuisim.pictures.charts.sample_chart import build_sample_chart
 from tuisim.pictures.movies.arrays import draw_arrays
 from tuisim.pictures.movies.clip import ClipMoment, ClipPanel, ClipRun
 from tuisim.pictures.scene.discs import DiscFace, list_disc_faces
-from tuisim.pictures.scene.pen import build_pen_trace
+from tuisim.pictures.scene.pen import Piece
 from tuisim.pictures.scene.pictures import (
     build_painter,
     build_scene,
@@ -270,7 +270,7 @@ class MovingWorld:
         from PIL import Image
 
         self._painter.trace.add(
-            build_pen_trace(self._spec, self._recorded.telemetry[self._traced : moment.tick + 1])
+            Piece.from_run(self._spec, self._recorded.telemetry[self._traced : moment.tick + 1])
         )
         self._traced = moment.tick + 1
         return Image.fromarray(

@@ -132,6 +132,19 @@ class Piece:
         """
         return cls(xs_mm, ys_mm, parse_pen_color(pen.color), pen.width_mm)
 
+    @classmethod
+    def from_run(cls, spec: RunSpec, telemetry: npt.NDArray[Any]) -> Piece:
+        """Return the pen trace of a run, from the records of `engine.runs.views.TelemetryView.array`."""
+        xs_mm, ys_mm, _ = place_drawn_mm(spec.robot, telemetry)
+        # Damaged records may have no valid pose.
+        far = (np.abs(xs_mm) >= FAR_MM) | (np.abs(ys_mm) >= FAR_MM)
+        xs_mm[far] = ys_mm[far] = np.nan
+        places = np.nan_to_num(np.round(np.stack((xs_mm, ys_mm)) / _FINE_MM), nan=FAR_MM)
+        moved = np.any(np.diff(places, axis=1, prepend=np.nan) != 0, axis=0)
+        # The last point before a move is needed, too: it ends a line.
+        needed = moved | np.append(moved[1:], True)
+        return cls.from_points(xs_mm[needed], ys_mm[needed], spec.robot.pen)
+
     def lift(self) -> Piece:
         """Return the piece with NaN as its first point, so that it is not joined to the piece before it."""
         return replace(
@@ -221,16 +234,3 @@ FAR_MM = 1e5
 """What is drawn farther from the field is left out: the time for a line grows with its length."""
 _FINE_MM = 1.0
 """Accuracy of the points of a trace: in most ticks the pen moves less."""
-
-
-def build_pen_trace(spec: RunSpec, telemetry: npt.NDArray[Any]) -> Piece:
-    """Return the pen trace of a run, from the records of `engine.runs.views.TelemetryView.array`."""
-    xs_mm, ys_mm, _ = place_drawn_mm(spec.robot, telemetry)
-    # Damaged records may have no valid pose.
-    far = (np.abs(xs_mm) >= FAR_MM) | (np.abs(ys_mm) >= FAR_MM)
-    xs_mm[far] = ys_mm[far] = np.nan
-    places = np.nan_to_num(np.round(np.stack((xs_mm, ys_mm)) / _FINE_MM), nan=FAR_MM)
-    moved = np.any(np.diff(places, axis=1, prepend=np.nan) != 0, axis=0)
-    # The last point before a move is needed, too: it ends a line.
-    needed = moved | np.append(moved[1:], True)
-    return Piece.from_points(xs_mm[needed], ys_mm[needed], spec.robot.pen)

@@ -15,7 +15,7 @@ from tuisim.engine.core.sensors.touch import pressed
 from tuisim.engine.core.sensors.ultrasonic import measure_rays_mm
 from tuisim.engine.core.spec import PenSpec, RobotSpec, RunSpec
 from tuisim.pictures.scene.painter import FRAME_PX, ScenePainter, SceneState
-from tuisim.pictures.scene.pen import PenTrace, Piece, build_pen_trace
+from tuisim.pictures.scene.pen import PenTrace, Piece
 from tuisim.pictures.scene.robot import measure_reach_mm
 from tuisim.pictures.scene.view import FIELD, Area, Viewport
 from tuisim.terminal.pixels import Pixels
@@ -180,7 +180,7 @@ def draw_end(run: StoredRun) -> Image:
     last = run.telemetry.last()
     records = run.telemetry.array()
     mat = run.find_mat_files().read_pixels()
-    trace = build_pen_trace(run.spec, records)
+    trace = Piece.from_run(run.spec, records)
     return draw_world(run.spec, mat, read_pose(last), (trace,), area=find_area(records))
 
 

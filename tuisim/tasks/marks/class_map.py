@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 
-from tuisim.analysis.pins import Dot, Picture, clamp_to_picture, encode_picture
+from tuisim.analysis.pins import Dot, Picture, clamp_to_picture
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError, counted, listed
 from tuisim.engine.runs.run_folder import StoredRun
@@ -54,11 +54,10 @@ def _build_map(first: StoredRun, misses: Sequence[Miss]) -> Picture | None:
         return None
     students = {miss.student for miss in misses}
     view = build_world_view(first.spec.robot)
-    return Picture(
+    return Picture.from_image(
         f"Where goals were missed, {counted(len(misses), 'time')} by {counted(len(students), 'student')}: each dot "
         "says whose it is; a dot at the edge may be farther off the mat, and says how far",
-        encode_picture(picture),
-        picture.size,
+        picture,
         view,
         dots=_place_dots(view, misses),
     )

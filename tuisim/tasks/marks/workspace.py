@@ -68,7 +68,8 @@ def compute_digest(student: Student) -> str:
                 digest.update(hashlib.sha256(os.fsencode(os.readlink(path))).digest())
             else:
                 with open_regular(path, follow_links=True) as file:
-                    digest.update(hashlib.file_digest(file, "sha256").digest())
+                    content = hashlib.file_digest(file, "sha256")  # type: ignore[arg-type]
+                    digest.update(content.digest())
         except OSError as error:
             digest.update(str(error.errno).encode())
     return digest.hexdigest()
