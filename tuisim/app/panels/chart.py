@@ -17,7 +17,6 @@ from tuisim.app.plot_view import PlotView
 from tuisim.app.snapshot import AT_REST, CHART_PERIOD_S, RunPhase, Snapshot
 from tuisim.base.data_class import dataclass
 from tuisim.logs.levels import find_light
-from tuisim.pictures.charts import axes
 from tuisim.pictures.charts.bands import find_spans
 from tuisim.pictures.charts.layout import Span
 from tuisim.pictures.charts.text_chart import ChartPainter, ChartPicture, ChartState, format_values
@@ -255,8 +254,8 @@ class Chart(LinesPanel, can_focus=True):
         if picture is None or not picture.columns:
             return
         now = self._traces.end_s() if self._state.cursor_s is None else self._state.cursor_s
-        column = axes.find_column(now, picture.x_limits, picture.columns) + columns
-        self._put_cursor(axes.find_column_value(column, picture.x_limits, picture.columns))
+        column = picture.find_column(now) + columns
+        self._put_cursor(picture.find_value(column))
 
     def action_leave(self) -> None:
         if self._state.cursor_s is None:
@@ -371,4 +370,4 @@ class Chart(LinesPanel, can_focus=True):
 
     @staticmethod
     def _compute_time(column: int, picture: ChartPicture) -> float:
-        return axes.find_column_value(column - picture.left, picture.x_limits, picture.columns)
+        return picture.find_value(column - picture.left)

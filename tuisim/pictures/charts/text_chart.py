@@ -106,10 +106,18 @@ class ChartPicture:
     plot: Plot | None = None
     """The content of the canvas, for an image in place of it; None if there is none, or no room for it."""
 
+    def find_column(self, x: float) -> int:
+        """Return the column of the canvas, counted from its left edge, of a value on the horizontal axis."""
+        return axes.find_column(x, self.x_limits, self.columns)
+
+    def find_value(self, column: int) -> float:
+        """Return the value on the horizontal axis in the middle of a column of the canvas."""
+        return axes.find_column_value(column, self.x_limits, self.columns)
+
     def find_time_s(self, column: int, row: int) -> float | None:
         """Return the time in s at a column and row of the chart; None outside the canvas."""
         if 0 <= column - self.left < self.columns and 0 <= row - self.top < self.rows:
-            return axes.find_column_value(column - self.left, self.x_limits, self.columns)
+            return self.find_value(column - self.left)
         return None
 
 

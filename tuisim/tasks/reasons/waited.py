@@ -18,7 +18,7 @@ from tuisim.base.errors import LogError
 from tuisim.base.source import Program
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import NS_PER_S, Library
-from tuisim.engine.core.remote_spec import REMOTE_BY_HAND
+from tuisim.engine.core.remote_spec import RemotePress
 from tuisim.engine.core.sensors import build_mounted_sensor
 from tuisim.engine.core.spec import (
     ColorSensorSpec,
@@ -28,7 +28,7 @@ from tuisim.engine.core.spec import (
     TouchSpec,
     UltrasonicSpec,
 )
-from tuisim.engine.protocol import End, SetButtons, UserAction
+from tuisim.engine.protocol import End, UserAction
 from tuisim.engine.runs.brick_state import BrickState
 from tuisim.engine.runs.readings import (
     KEYS_BY_PORT,
@@ -250,12 +250,15 @@ class _Search:
         is_meant &= self._rows["port"] == READING_PORTS.index(port)
         return is_meant
 
-    def _has_seen(self, subject: Subject, port: str, presses: Iterable[HandPress]) -> bool:
-        """Return whether the program has read a subject, such as a touch sensor, during at least one press by hand."""
-        times_s = self._ticks[self._select(subject, port)] / self._hz
-        return any(
-            ((times_s >= press.from_s) & (times_s < press.until_s)).any() for press in presses
-        )
+    def _find_held(self, ticks: Array, presses: Iterable[HandPress | RemotePress]) -> Array:
+        """Return for each of some ticks whether at least one of several presses goes on then, shape (n,)."""
+        import numpy as np
+
+        times_s = ticks / self._hz
+        is_held = np.zeros(len(ticks), np.bool_)
+        for press in presses:
+            is_held |= (times_s >= press.from_s) & (times_s < press.until_s)
+        return is_held
 
     def _ask(self, line: int) -> Question:
         return read_facts(self._run.program).find_question(line) if self._asks_text else Question()
@@ -306,6 +309,7 @@ class _Search:
 
         mode = READING_MODES[self._rows["mode"][rows[-1]]]
         questions = [self._ask(line) for line in dict.fromkeys(self._rows["line"][rows].tolist())]
+        every = self._select(subject, port)
         sought = _list_sought(subject, port, mode, questions)
         needs_all = len(sought) > 1 and any(question.needs_all for question in questions)
         limit = self._find_limit(mode, questions[0])
@@ -313,7 +317,8 @@ class _Search:
         if subject is Subject.BUTTONS and {*sought} - {press.name for press in presses}:
             # A menu may ignore buttons until the right one is pressed, so earlier presses were answered.
             rows = self._skip_answered(rows, presses)
-        value = self._describe_constant(subject, port, rows, sought, needs_all, limit)
+        is_pressed = self._is_pressed(rows, presses, sought, needs_all)
+        value = self._describe_constant(subject, port, rows, is_pressed, limit)
         times_s = self._rows["time_ns"][rows] / NS_PER_S
         is_over = subject not in OUTSIDE_SUBJECTS and self._is_read_no_more(times_s)
         if value is None or is_over:
@@ -331,7 +336,7 @@ class _Search:
             limit,
             pace_s=float(np.median(np.diff(times_s))) if len(rows) > 1 else 0.0,
             pressed=presses,
-            waits_again=self._has_seen(subject, port, find_hits(presses, sought)),
+            waits_again=bool(self._find_held(self._ticks[every], find_hits(presses, sought)).any()),
             pose=first,
             end=last,
             mode=mode,
@@ -386,8 +391,7 @@ class _Search:
         subject: Subject,
         port: str,
         rows: Array,
-        sought: tuple[str, ...],
-        needs_all: bool,
+        is_pressed: bool,
         limit: float | None,
     ) -> str | None:
         """Return what all readings had in common, such as `12 cm`; None if they differ, or if the awaited value came.
@@ -398,8 +402,7 @@ class _Search:
             subject: The kind of sensor, or other source.
             port: Its port.
             rows: The indices of its readings.
-            sought: Names of the values that the program waits for.
-            needs_all: Whether the program waits for all of these together.
+            is_pressed: Whether a hand pressed what the program waits for.
             limit: The distance that the program compares with, as from `_find_limit`; None if there is none.
         """
         import numpy as np
@@ -412,11 +415,10 @@ class _Search:
         )
         match subject, sensor:
             case Subject.BUTTONS, _:
-                return (
-                    None if self._is_pressed(ticks, sought or KEYS_BY_PORT[port], needs_all) else ""
-                )
+                return None if is_pressed else ""
             case Subject.REMOTE, InfraredSpec():
-                return None if self._is_remote_pressed(ticks, sought, needs_all) else ""
+                in_world = self._find_held(ticks, self._run.spec.world.remote).any()
+                return None if is_pressed or in_world else ""
             case Subject.BEACON, InfraredSpec():
                 return None if self._run.spec.world.beacon else ""
             case Subject.TOUCH, TouchSpec():
@@ -432,33 +434,20 @@ class _Search:
                 return None if np.ptp(headings_deg) > _SAME_HEADING_DEG else ""
         return None
 
-    def _is_pressed(self, ticks: Array, names: Sequence[str], needs_all: bool) -> bool:
-        """Return whether buttons were pressed by hand in at least one of the ticks.
+    def _is_pressed(
+        self, rows: Array, presses: Sequence[HandPress], sought: Sequence[str], together: bool
+    ) -> bool:
+        """Return whether what the program waits for was pressed by hand at one of its readings.
 
         Args:
-            ticks: The ticks.
-            names: The buttons.
-            needs_all: Whether all buttons must have been pressed together; otherwise any one of them suffices.
+            rows: The indices of the readings.
+            presses: The presses by hand.
+            sought: The names of what the program waits for; empty for anything.
+            together: Whether it waits for all of these at the same time.
         """
-        import numpy as np
-
-        enough = len(names) if needs_all else 1
-        changes = [
-            (action.tick, len({*names} & {*action.command.pressed}) >= enough)
-            for action in self._run.actions
-            if isinstance(action.command, SetButtons)
-        ]
-        states = [False, *(is_pressed for _, is_pressed in changes)]
-        indices = np.searchsorted([tick for tick, _ in changes], ticks, side="right")
-        return bool(np.array(states)[indices].any())
-
-    def _is_remote_pressed(self, ticks: Array, sought: tuple[str, ...], needs_all: bool) -> bool:
-        times_s = ticks / self._hz
-        in_world = any(
-            ((times_s >= press.from_s) & (times_s < press.until_s)).any()
-            for press in self._run.spec.world.remote
-        )
-        return in_world or self._is_pressed(ticks, sought or tuple(REMOTE_BY_HAND), needs_all)
+        groups = [[name] for name in sought] if together else [sought]
+        held = [self._find_held(self._ticks[rows], find_hits(presses, names)) for names in groups]
+        return any(map(all, zip(*held, strict=True)))
 
     def _measure(self, sensor: SensorSpec, ticks: Array) -> Iterator[tuple[float, ...]]:
         """Yield what a sensor other than a colour sensor measures at each pose that the robot had at some ticks."""
