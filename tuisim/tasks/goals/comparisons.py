@@ -27,23 +27,28 @@ from tuisim.tasks.goals.condition import (
 
 
 @dataclass(frozen=True, slots=True)
-class WhenCondition(Condition):
-    """A condition of a goal: several comparisons, with columns or output of the run, are all true in the same tick."""
+class ComparisonsCondition(Condition):
+    """The base class of conditions that are several comparisons."""
 
     SHORT: ClassVar[str] = "comparisons"
 
     comparisons: tuple[str, ...]
     """Such as `left_red_pc < 10`, see `engine.core.conditions`."""
 
-    def __post_init__(self) -> None:
-        check_count(self.comparisons, "comparisons")
-        for number, text in enumerate(self.comparisons, start=1):
-            _parse_comparison(text, f"comparisons[{number}]")
-
     @property
     def conditions(self) -> tuple[ValueCondition, ...]:
         """The comparisons of this condition, parsed from their texts."""
         return tuple(_parse_comparison(text, "") for text in self.comparisons)
+
+
+@dataclass(frozen=True, slots=True)
+class WhenCondition(ComparisonsCondition):
+    """A condition of a goal: several comparisons, with columns or output of the run, are all true in the same tick."""
+
+    def __post_init__(self) -> None:
+        check_count(self.comparisons, "comparisons")
+        for number, text in enumerate(self.comparisons, start=1):
+            _parse_comparison(text, f"comparisons[{number}]")
 
 
 def _parse_comparison(text: str, key: str) -> ValueCondition:
@@ -69,11 +74,10 @@ def _parse_comparison(text: str, key: str) -> ValueCondition:
 
 
 @dataclass(frozen=True, slots=True)
-class KeepCondition(Condition):
+class KeepCondition(ComparisonsCondition):
     """A condition of a goal: comparisons with columns or output are true all the time, or for a share of it."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.HELD
-    SHORT: ClassVar[str] = "comparisons"
 
     comparisons: tuple[str, ...] = ()
     """Such as `ultrasonic_mm > 80`; a comparison with samples must be true of each sample."""
@@ -95,11 +99,6 @@ class KeepCondition(Condition):
                 raise ConfigError(
                     f"is only true at instants: {text!r}", describe_comparison(), key=key
                 )
-
-    @property
-    def conditions(self) -> tuple[ValueCondition, ...]:
-        """The comparisons of this condition, parsed from their texts."""
-        return tuple(_parse_comparison(text, "") for text in self.comparisons)
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,14 +126,10 @@ class CountCondition(Condition):
 
 
 @dataclass(frozen=True, slots=True)
-class StructureCondition(Condition):
+class StructureCondition(ComparisonsCondition):
     """A condition of a goal about counts in the program's text, such as `loops >= 1` or `lines <= 30`."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.FIXED
-    SHORT: ClassVar[str] = "comparisons"
-
-    comparisons: tuple[str, ...]
-    """Such as `loops >= 1` or `lines <= 30`."""
 
     def __post_init__(self) -> None:
         check_count(self.comparisons, "comparisons")
@@ -157,8 +152,3 @@ class StructureCondition(Condition):
                     nearest(condition.name, STRUCTURES),
                     key=key,
                 )
-
-    @property
-    def conditions(self) -> tuple[ValueCondition, ...]:
-        """The comparisons of this condition, parsed from their texts."""
-        return tuple(condition for text in self.comparisons if (condition := parse_condition(text)))

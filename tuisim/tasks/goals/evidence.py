@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
+from collections.abc import Sequence
 from functools import cached_property
 from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
@@ -145,10 +146,11 @@ class Evidence:
     @cached_property
     def rows(self) -> list[OutputRow]:
         """The lines that the program printed or read as input, in order, up to `MAX_ROWS`."""
-        streams = (Stream.STDOUT, Stream.STDERR, Stream.INPUT, Stream.DATA)
-        return list(
-            islice((row for row in self._run.output.rows() if row.stream in streams), MAX_ROWS)
-        )
+        return self._read_rows((Stream.STDOUT, Stream.STDERR, Stream.INPUT, Stream.DATA))
+
+    def _read_rows(self, streams: Sequence[Stream]) -> list[OutputRow]:
+        rows = (row for row in self._run.output.rows() if row.stream in streams)
+        return list(islice(rows, MAX_ROWS))
 
     @cached_property
     def readings(self) -> Readings:
@@ -189,11 +191,7 @@ class Evidence:
     @cached_property
     def brick_rows(self) -> list[OutputRow]:
         """The texts that the brick displayed and the sounds that it played, as rows in order, up to `MAX_ROWS`."""
-        return list(
-            islice(
-                (row for row in self._run.output.rows() if row.stream in BRICK_STREAMS), MAX_ROWS
-            )
-        )
+        return self._read_rows(BRICK_STREAMS)
 
     def column(self, name: str) -> Array:
         """Return the values of a column, one of `list_columns` or `BRICK_COLUMNS`, at every tick, shape (n,).

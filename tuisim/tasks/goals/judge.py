@@ -132,12 +132,9 @@ def _sample_strokes(records: Array, pen: PenSpec, condition: DrawCondition) -> t
 
 def _find_calls(
     condition: UseCondition | AvoidCondition, evidence: Evidence
-) -> dict[str, list[int]] | Finding:
+) -> dict[str, list[int]]:
     facts = read_facts(evidence.program)
-    try:
-        return {call: facts.find_calls(call) for call in condition.calls}
-    except RecursionError as error:
-        return Finding(None, f"The program cannot be read: {error}.")
+    return {call: facts.find_calls(call) for call in condition.calls}
 
 
 def find_used(condition: UseCondition, evidence: Evidence, span: EvidenceSpan) -> Finding:
@@ -146,8 +143,6 @@ def find_used(condition: UseCondition, evidence: Evidence, span: EvidenceSpan) -
     Otherwise the finding has no moment, and says which calls are missing.
     """
     calls = _find_calls(condition, evidence)
-    if isinstance(calls, Finding):
-        return calls
     missing = [call for call, lines in calls.items() if not lines]
     if missing:
         return Finding(None, f"The program does not call {' and '.join(missing)}.")
@@ -160,8 +155,6 @@ def find_avoided(condition: AvoidCondition, evidence: Evidence, span: EvidenceSp
     Otherwise the finding has no moment, and says on which line the program has such a call.
     """
     calls = _find_calls(condition, evidence)
-    if isinstance(calls, Finding):
-        return calls
     used = [(lines[0], call) for call, lines in calls.items() if lines]
     if used:
         line, call = min(used)
@@ -176,13 +169,10 @@ def find_structure(
 
     Otherwise the finding has no moment, and says which count is wrong.
     """
-    try:
-        for comparison in condition.conditions:
-            count = read_facts(evidence.program).count_structure(comparison.name)
-            if not COMPARE[comparison.operator](count, comparison.number):
-                return Finding(None, f"The goal needs {comparison}; the program has {count}.")
-    except RecursionError as error:
-        return Finding(None, f"The program cannot be read: {error}.")
+    for comparison in condition.conditions:
+        count = read_facts(evidence.program).count_structure(comparison.name)
+        if not COMPARE[comparison.operator](count, comparison.number):
+            return Finding(None, f"The goal needs {comparison}; the program has {count}.")
     return Finding(START)
 
 
@@ -332,6 +322,9 @@ class _Judge:
             finding = FINDERS[type(condition)](condition, self._evidence, span)
         except UnjudgedError as error:
             return self._build_unknown(f"{error}.")
+        except RecursionError as error:
+            # The text of the program is nested too deeply.
+            finding = Finding(None, f"The program cannot be read: {error}.")
         match condition.KIND:
             case ConditionKind.REACHED:
                 return self._judge_reached(goal, finding, stop)

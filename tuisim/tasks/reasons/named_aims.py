@@ -46,7 +46,7 @@ def list_wrong_bands(data: RunData) -> Iterator[Unmet]:
         color = data.facts.remarks.find_color(loop.first_line, loop.last_line, ends)
         if not color or loop.start_line or isinstance(loop.limit, str):
             continue
-        series = data.measure(loop, (0, len(data.records)))
+        series = data.measure(loop)
         is_other = loop.operator[0] != _LIMITS[color][1]
         if is_other or series is None or series.column not in LIGHT_COLUMNS:
             continue

@@ -212,17 +212,18 @@ class RunData:
 
         return np.array([*measure_quiet_color(records, eye, self.run.spec, self.mat).values()])
 
-    def measure(self, loop: LoopEnd, stay: tuple[int, int]) -> Series | None:
+    def measure(self, loop: LoopEnd, stay: tuple[int, int] | None = None) -> Series | None:
         """Return the values that the program has read for a comparison.
 
         The result is None if they are not known, or if noise or the pen's marks would make the computation slow.
 
         Args:
             loop: The comparison with a constant, which may end a loop or have another purpose.
-            stay: The first tick to consider, and the tick after the last one.
+            stay: The first tick to consider, and the tick after the last one; None for the whole run.
         """
+        first, end = stay or (0, len(self.records))
         ticks = self.find_read_ticks(loop.read_line)
-        return self.measure_ticks(loop, ticks[(ticks >= stay[0]) & (ticks < stay[1])])
+        return self.measure_ticks(loop, ticks[(ticks >= first) & (ticks < end)])
 
     def find_read_ticks(self, line: int) -> Array:
         """Return the ticks of the recording at which a line of the program read a sensor or motor, ascending."""

@@ -134,7 +134,7 @@ def list_near_misses(data: RunData) -> Iterator[Unmet]:
 def _list_met(data: RunData) -> Iterator[Unmet]:
     """Yield a fault for each loop that ended at its first reading, which already was what the loop waited for."""
     for loop in data.facts.loop_ends:
-        series = data.measure(loop, (0, len(data.records)))
+        series = data.measure(loop)
         if series is None:
             continue
         text = f"the loop ended at once: {series.device} read"
@@ -174,7 +174,7 @@ def list_stale_angles(data: RunData) -> Iterator[Unmet]:
 
     lines = data.records["line"]
     for loop in data.facts.loop_ends:
-        series = data.measure(loop, (0, len(data.records)))
+        series = data.measure(loop)
         if series is None or series.column != "deg" or isinstance(loop.limit, str):
             continue
         if series.device.startswith("the motor"):
@@ -195,7 +195,7 @@ def list_stale_angles(data: RunData) -> Iterator[Unmet]:
 def list_recounts(data: RunData) -> Iterator[Unmet]:
     """Yield a fault for each line that counted one band twice, in successive readings of a moving robot."""
     for line, test in data.facts.counts:
-        series = data.measure(test, (0, len(data.records)))
+        series = data.measure(test)
         if series is None or series.column not in LIGHT_COLUMNS or isinstance(test.limit, str):
             continue
         is_met = COMPARE[test.operator](series.values, test.limit)

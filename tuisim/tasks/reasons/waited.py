@@ -410,9 +410,7 @@ class _Search:
         if subject in OUTSIDE_SUBJECTS:
             return "" if subject is not Subject.GAMEPAD or len(rows) > 1 else None
         ticks = list_distinct(self._ticks[rows])
-        sensor = next(
-            (sensor for sensor in self._run.spec.robot.sensors if sensor.port == port), None
-        )
+        sensor = find_sensor(self._run.spec, port)
         match subject, sensor:
             case Subject.BUTTONS, _:
                 return None if is_pressed else ""
@@ -504,6 +502,11 @@ class _Search:
         return (
             name_only_color(np.array([*columns]), sensor, self._run.spec, has_grey=has_grey) or None
         )
+
+
+def find_sensor(spec: RunSpec, port: str) -> SensorSpec | None:
+    """Return the sensor of a run's robot on a port; None if there is none."""
+    return next((sensor for sensor in spec.robot.sensors if sensor.port == port), None)
 
 
 def _list_sought(

@@ -21,7 +21,7 @@ from tuisim.tasks.reasons.hand_presses import find_hits
 from tuisim.tasks.reasons.run_data import RunData, describe_place
 from tuisim.tasks.reasons.subjects import SEEN, Subject
 from tuisim.tasks.reasons.unmet import Unmet, find_unmet
-from tuisim.tasks.reasons.waited import Awaited, find_awaited
+from tuisim.tasks.reasons.waited import Awaited, find_awaited, find_sensor
 
 COLORED_MAT = "Rainbow_bands"
 COLOR_PLACES_MM: Mapping[str, int] = {"red": 240, "green": 440, "blue": 740, "yellow": 1245}
@@ -271,10 +271,10 @@ def _name_obstacle(awaited: Awaited, spec: RunSpec) -> str:
     # A robot that has moved gets near an obstacle by itself, so the obstacle may be at any distance.
     limit = None if _has_moved(awaited) else awaited.limit
     pose = awaited.pose or spec.world.start
+    sensor = find_sensor(spec, awaited.port)
     options = ""
-    for sensor in spec.robot.sensors:
-        if sensor.port == awaited.port and isinstance(sensor, UltrasonicSpec | InfraredSpec):
-            options = find_obstacle(sensor, spec, pose, limit)
+    if isinstance(sensor, UltrasonicSpec | InfraredSpec):
+        options = find_obstacle(sensor, spec, pose, limit)
     return f"{options or '-o with a file (tuisim obstacles)'} puts one in front of it"
 
 
@@ -283,12 +283,12 @@ def _name_nearest(awaited: Awaited, spec: RunSpec) -> str:
 
     Otherwise, the result is empty.
     """
-    for sensor in spec.robot.sensors:
-        if sensor.port == awaited.port and isinstance(sensor, UltrasonicSpec):
-            nearest_mm = find_nearest(sensor, spec)
-            if awaited.limit is not None and awaited.limit < nearest_mm:
-                return f"at a wall it reads {nearest_mm / 10:.2g} cm, never less"
-    return ""
+    sensor = find_sensor(spec, awaited.port)
+    if awaited.limit is None or not isinstance(sensor, UltrasonicSpec):
+        return ""
+    nearest_mm = find_nearest(sensor, spec)
+    is_never = awaited.limit < nearest_mm
+    return f"at a wall it reads {nearest_mm / 10:.2g} cm, never less" if is_never else ""
 
 
 def name_remedy_with_keys(awaited: Awaited, spec: RunSpec) -> str:
