@@ -250,6 +250,10 @@ class _Search:
         is_meant &= self._rows["port"] == READING_PORTS.index(port)
         return is_meant
 
+    def _has_seen(self, subject: Subject, port: str, presses: Iterable[HandPress]) -> bool:
+        """Return whether the program has read a subject, such as a touch sensor, during at least one press by hand."""
+        return bool(self._find_held(self._ticks[self._select(subject, port)], presses).any())
+
     def _find_held(self, ticks: Array, presses: Iterable[HandPress | RemotePress]) -> Array:
         """Return for each of some ticks whether at least one of several presses goes on then, shape (n,)."""
         import numpy as np
@@ -309,14 +313,12 @@ class _Search:
 
         mode = READING_MODES[self._rows["mode"][rows[-1]]]
         questions = [self._ask(line) for line in dict.fromkeys(self._rows["line"][rows].tolist())]
-        every = self._select(subject, port)
         sought = _list_sought(subject, port, mode, questions)
         needs_all = len(sought) > 1 and any(question.needs_all for question in questions)
         limit = self._find_limit(mode, questions[0])
         presses = self._find_presses(subject, port)
-        if subject is Subject.BUTTONS and {*sought} - {press.name for press in presses}:
-            # A menu may ignore buttons until the right one is pressed, so earlier presses were answered.
-            rows = self._skip_answered(rows, presses)
+        if subject is Subject.BUTTONS:
+            rows = self._skip_answered(rows, presses, sought)
         is_pressed = self._is_pressed(rows, presses, sought, needs_all)
         value = self._describe_constant(subject, port, rows, is_pressed, limit)
         times_s = self._rows["time_ns"][rows] / NS_PER_S
@@ -336,7 +338,7 @@ class _Search:
             limit,
             pace_s=float(np.median(np.diff(times_s))) if len(rows) > 1 else 0.0,
             pressed=presses,
-            waits_again=bool(self._find_held(self._ticks[every], find_hits(presses, sought)).any()),
+            waits_again=self._has_seen(subject, port, find_hits(presses, sought)),
             pose=first,
             end=last,
             mode=mode,
@@ -352,7 +354,9 @@ class _Search:
         names = HANDS.get(subject, KEYS_BY_PORT.get(port, ()))
         return find_presses(self._run.actions, names, self._hz, len(self._records))
 
-    def _skip_answered(self, rows: Array, presses: Sequence[HandPress]) -> Array:
+    def _skip_answered(
+        self, rows: Array, presses: Sequence[HandPress], sought: Sequence[str]
+    ) -> Array:
         """Return the readings after the last press by hand, as the program may wait for another press.
 
         If these readings do not go on for at least `WINDOW_S` seconds, return all readings.
@@ -360,10 +364,12 @@ class _Search:
         Args:
             rows: The indices of the readings.
             presses: The presses by hand.
+            sought: The names of the buttons that the program waits for. If all of them were pressed, no press was
+                answered: a menu may ignore buttons until the right one is pressed.
         """
         import numpy as np
 
-        if not presses:
+        if not presses or not {*sought} - {press.name for press in presses}:
             return rows
         is_later = self._ticks[rows] / self._hz > presses[-1].until_s
         later: Array = rows[np.flatnonzero(is_later)]
