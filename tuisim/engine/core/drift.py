@@ -73,19 +73,17 @@ def _build_equal_sensors(drift: DriftSpec) -> DriftSpec:
     return replace(drift, gyro_scale_pc=0.0, echo_bias_mm=0.0, light_gain_pc=0.0)
 
 
-@lru_cache(maxsize=64)
-def _draw_normal(seed: int, channel: str) -> float:
-    """Return a normally distributed number for a seed, limited to ±`MAX_DEVIATIONS`.
-
-    `channel` names the error that is drawn, so that each error of a run gets a number of its own.
-    """
-    far, turn = draw_numbers(seed, 0, channel, 2)
+def _shape_normal(far: float, turn: float) -> float:
+    """Return a normally distributed number, limited to ±`MAX_DEVIATIONS`, for two evenly distributed ones."""
+    # The Box-Muller transform.
     return max(-MAX_DEVIATIONS, min(MAX_DEVIATIONS, sqrt(-2 * log(1 - far)) * cos(2 * pi * turn)))
 
 
+@lru_cache(maxsize=64)
 def draw_light_gain(port: str, drift: DriftSpec, seed: int) -> float:
     """Return the brightness that the colour sensor on a port sees, as a multiple of the true brightness."""
-    return 1 + _draw_normal(seed, f"drift/light/{port}") * drift.light_gain_pc / 100
+    far, turn = draw_numbers(seed, 0, f"drift/light/{port}", 2)
+    return 1 + _shape_normal(far, turn) * drift.light_gain_pc / 100
 
 
 @lru_cache(maxsize=64)
@@ -99,12 +97,8 @@ def draw_echo_bias_mm(port: str, drift: DriftSpec, seed: int) -> int:
 def draw_errors(drift: DriftSpec, seed: int) -> DrawnErrors:
     """Return the random errors of wheels, gyro and light in a run; the same seed always gives the same errors."""
     ours = draw_numbers(seed, 0, "drift", 9)
-    # The Box-Muller transform makes each normally distributed number of two evenly distributed ones.
     pairs = zip(ours[0:8:2], ours[1:8:2], strict=True)
-    normals = [sqrt(-2 * log(1 - far)) * cos(2 * pi * turn) for far, turn in pairs]
-    left, right, spacing, gyro = (
-        max(-MAX_DEVIATIONS, min(MAX_DEVIATIONS, normal)) for normal in normals
-    )
+    left, right, spacing, gyro = (_shape_normal(far, turn) for far, turn in pairs)
     return DrawnErrors(
         1 + left * drift.wheel_pc / 100,
         1 + right * drift.wheel_pc / 100,
@@ -165,8 +159,6 @@ def compute_lost_echoes(flatness_deg: float, drift: DriftSpec) -> float:
 class _Wheel:
     """A wheel with errors: it slides on the floor while it speeds up or brakes, and its gears have play."""
 
-    __slots__ = ("_accelerations", "_half_mm", "_play_mm", "_slip", "_times", "before_mm")
-
     def __init__(self, times: float, backlash_mm: float, slip: float, tick_hz: int) -> None:
         self._times = times
         self._half_mm = backlash_mm / 2
@@ -208,20 +200,10 @@ class SlippingWheels:
         spec: The run.
     """
 
-    __slots__ = (
-        "_left",
-        "_left_mm",
-        "_right",
-        "_right_mm",
-        "_seed",
-        "_spacing",
-        "_turn_slip",
-    )
-
     def __init__(self, spec: RunSpec) -> None:
         drift = find_drift(spec)
         hz = spec.profile.tick_hz
-        drawn = draw_errors(find_drift(spec), spec.seed)
+        drawn = draw_errors(drift, spec.seed)
         self._seed = spec.seed
         self._left_mm, self._right_mm = compute_mm_per_degree(spec.robot)
         self._left, self._right = (
@@ -271,8 +253,6 @@ class WrongGyro:
         spec: The run.
         drive: The drive of the robot.
     """
-
-    __slots__ = ("_carry_deg", "_drift_deg", "_drifts", "_drive", "_max_deg", "_scale")
 
     def __init__(self, spec: RunSpec, drive: Drive) -> None:
         drift = find_drift(spec)

@@ -26,8 +26,6 @@ def build_start_flags(robot: RobotSpec) -> int:
 class EndStops:
     """The end stops of one motor, and where the motor is between them."""
 
-    __slots__ = ("_at_deg", "_high_deg", "_high_flag", "_low_deg", "_low_flag")
-
     def __init__(self, robot: RobotSpec, motor: MotorSpec) -> None:
         self._low_deg = -math.inf if motor.low_deg is None else motor.low_deg
         self._high_deg = math.inf if motor.high_deg is None else motor.high_deg

@@ -108,16 +108,14 @@ def create_motor(spec: RunSpec, kind: str, *, free: bool = False) -> Motor:
 
 def build_drive(spec: RunSpec) -> Drive:
     """Return the drive of a run's robot, at its initial pose."""
-    robot = spec.robot
-    start = spec.world.start
-    early = 0.5 if spec.profile.halfway_heading else 0.0
-    match spec.profile.motor_law:
-        case MotorLaw.BRICK | MotorLaw.EV3DEV | MotorLaw.PYBRICKS | MotorLaw.PYBRICKS_4:
-            return BrickDrive(robot, start, early)
-        case MotorLaw.NBEV3DEVSIM:
-            return BrowserDrive(robot, start, early)
-        case _:
-            assert_never(spec.profile.motor_law)
+    is_browser = spec.profile.motor_law is MotorLaw.NBEV3DEVSIM
+    drive = BrowserDrive if is_browser else BrickDrive
+    return drive(spec.robot, spec.world.start, compute_early(spec))
+
+
+def compute_early(spec: RunSpec) -> float:
+    """Return the fraction of a tick's turn that already applies to the motion of that tick."""
+    return 0.5 if spec.profile.halfway_heading else 0.0
 
 
 class Motion:
@@ -132,7 +130,6 @@ class Motion:
     __slots__ = (
         "_buffer",
         "_driven",
-        "_early",
         "_hz",
         "_is_placed",
         "_left_dps",
@@ -171,8 +168,6 @@ class Motion:
         self.stall_ticks = compute_stall_ticks(self._hz)
         self._left_mm_per_deg, self._right_mm_per_deg = compute_mm_per_degree(spec.robot)
         self._spacing_mm = spec.robot.wheel_spacing_mm
-        self._early = 0.5 if spec.profile.halfway_heading else 0.0
-        """Fraction of a tick's turn that already applies to the motion of that tick."""
         self._build_solids(spec)
         self.tick = 0
         self.left = create_motor(spec, spec.robot.left_motor)
@@ -197,7 +192,9 @@ class Motion:
 
     def _build_solids(self, spec: RunSpec) -> None:
         """Prepare the walls and obstacles that the robot can meet."""
-        self._solids = Solids(spec.world, spec.robot, self._early) if spec.world.solid else None
+        self._solids = (
+            Solids(spec.world, spec.robot, compute_early(spec)) if spec.world.solid else None
+        )
         if self._solids is not None:
             # A point of the body moves farthest if one wheel turns forwards at full speed, and the other backwards.
             fastest = max(

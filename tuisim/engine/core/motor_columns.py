@@ -72,8 +72,6 @@ class MotorRecorder:
         sink: Receives the records; None if nobody does.
     """
 
-    __slots__ = ("_buffer", "_motors", "_sink", "_size")
-
     def __init__(self, motors: tuple[DrivenMotor, ...], sink: MotorSink | None) -> None:
         self._motors = motors
         self._sink = sink

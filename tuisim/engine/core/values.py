@@ -68,7 +68,6 @@ class Value(ABC):
         in_config: Whether the user's `config.toml` may set it, if there is an option.
     """
 
-    __slots__ = ("flags", "help", "in_config", "label", "later", "optional", "source", "unit")
     stored_as: ClassVar[Any] = str
     """Type or types of the value in a stored run."""
 
@@ -152,7 +151,6 @@ class Flag(Value):
     ON = "on"
     OFF = "off"
 
-    __slots__ = ("off_flag", "off_help")
     stored_as = bool
     allowed = "true or false"
     metavar = ""
@@ -179,7 +177,6 @@ class Flag(Value):
 class Number(Value):
     """A value that is a number from `low` to `high`, both included."""
 
-    __slots__ = ("high", "low")
     stored_as: ClassVar[Any] = int | float
     KIND: ClassVar[Any] = float
     """The type of the value in a spec."""
@@ -217,7 +214,6 @@ class Number(Value):
 class Whole(Number):
     """A value that is a whole number from `low` to `high`, both included."""
 
-    __slots__ = ()
     stored_as = int
     KIND = int
 
@@ -231,8 +227,6 @@ class Whole(Number):
 
 class Seed(Whole):
     """A value that is a whole number for random draws. Users choose one from its range; a stored run may have any."""
-
-    __slots__ = ()
 
     def check(self, value: Any) -> None:
         if isinstance(value, bool) or not isinstance(value, int):
@@ -249,8 +243,6 @@ class NamedNumber(Number):
     Args:
         names: Numbers by name.
     """
-
-    __slots__ = ("names",)
 
     def __init__(self, low: float, high: float, names: Mapping[str, float], **about: Any) -> None:
         super().__init__(low, high, **about)
@@ -281,7 +273,6 @@ class NamedNumber(Number):
 class Numbers(Number):
     """A value that consists of up to `most` numbers, each from `low` to `high`."""
 
-    __slots__ = ("most",)
     stored_as = (list, tuple)
 
     def __init__(self, low: float, high: float, most: int, **about: Any) -> None:
@@ -327,7 +318,6 @@ class Text(Value):
         pattern: Regular expression that the whole text must match.
     """
 
-    __slots__ = ("most", "pattern", "what")
     allowed = "text"
 
     def __init__(
@@ -369,7 +359,6 @@ class Choice(Value):
         metavar: The placeholder in the help; by default a list of all choices.
     """
 
-    __slots__ = ("_choices", "_metavar", "what")
     stored_as: ClassVar[Any] = str | int
 
     def __init__(
@@ -412,7 +401,6 @@ class Choice(Value):
 class Choices(Choice):
     """A value that consists of any number of texts out of a few allowed ones."""
 
-    __slots__ = ()
     stored_as = (list, tuple)
     allowed = "a list"
     choices = ()
@@ -433,7 +421,6 @@ class Choices(Choice):
 class Color(Value):
     """A value that is a colour, given by its CSS name or as `#rrggbb`."""
 
-    __slots__ = ()
     allowed = "a CSS colour name, or #rrggbb"
     metavar = "COLOUR"
 
@@ -463,8 +450,6 @@ class Part(Value):
         key: The name of the part in a file, if it differs from the field's.
         standard: Whether the part is standard equipment of a robot, for which panels and files have a fixed place.
     """
-
-    __slots__ = ("key", "of", "standard", "values")
 
     def __init__(
         self,
@@ -501,7 +486,6 @@ class NamedPart(Part):
     defaults. As text the spec is a name, followed by the numbers that differ, such as `typical gyro_dps=0`.
     """
 
-    __slots__ = ()
     metavar = "SIZES"
 
     @property
@@ -578,8 +562,6 @@ def _parse_number_or_text(text: str) -> float | str:
 
 class Parts(Part):
     """A value that consists of several specs of one class, parts of the spec that contains them."""
-
-    __slots__ = ()
 
     def check(self, value: Any) -> None:
         if not isinstance(value, tuple) or not all(isinstance(part, self.of) for part in value):

@@ -10,11 +10,12 @@ from functools import partial
 
 from tuisim.engine.core.commands.calls import Call
 from tuisim.engine.core.commands.driver import COMMAND_CALLS, CONSTANTS, CONTROLS, STOP_ACTIONS
-from tuisim.engine.core.driver.motor import STATES, SetPoints
+from tuisim.engine.core.driver.motor import STATES, Command, SetPoints
+from tuisim.engine.core.driver.regulator import StopAction
 from tuisim.engine.core.driver.simulated import SimulatedMotor
 from tuisim.engine.protocol import MotorRegisters
 from tuisim.engine.shim.device_files import NumberWriter, Reader, SimDevice, refuse
-from tuisim.engine.shim.motor import MAX_SET_POINT, SignedTacho
+from tuisim.engine.shim.motor import COMMANDS, MAX_SET_POINT, SignedTacho
 from tuisim.engine.shim.session import DeviceSession
 
 SET_POINTS = (
@@ -28,12 +29,8 @@ SET_POINTS = (
 """Attributes that are set points, in the order of `SetPoints`."""
 STOP_ACTION = len(SET_POINTS)
 SIGNED = ("speed_sp", "position_sp", "duty_cycle_sp")
-COMMANDS: dict[str, Call] = {command.value: call for command, call in COMMAND_CALLS.items()}
-STOP_NUMBERS = {action.value: float(number) for number, action in enumerate(STOP_ACTIONS)}
 FIRST_SET_POINTS = (*map(float, SetPoints()[:STOP_ACTION]), 0.0)
 """The set points of a motor after a reset, in the order in which its commands take them."""
-RESET_DRIVER = Call.RESET_DRIVER
-STATE_TEXTS = tuple(map(" ".join, STATES))
 
 
 class DriverTacho(SignedTacho):
@@ -54,7 +51,7 @@ class DriverTacho(SignedTacho):
             "position": lambda: self._now().position * self._sign,
             "speed": lambda: self._now().speed_dps * self._sign,
             "duty_cycle": lambda: self._now().duty * self._sign,
-            "state": lambda: STATE_TEXTS[self._now().state_bits],
+            "state": lambda: STATES[self._now().state_bits],
         }
         numbers: dict[str, NumberWriter] = {"position": self._set_position}
         for name in SET_POINTS:
@@ -116,15 +113,15 @@ class DriverTacho(SignedTacho):
 
     def _set_stop_action(self, text: str) -> None:
         super()._set_stop_action(text)
-        self._set_points[STOP_ACTION] = STOP_NUMBERS[text]
+        self._set_points[STOP_ACTION] = float(STOP_ACTIONS.index(StopAction(text)))
 
     def _command(self, text: str) -> None:
-        call = COMMANDS.get(text)
-        if call is None:
+        if text not in COMMANDS:
             raise refuse(text)
+        call = COMMAND_CALLS[Command(text)]
         self._session.command()
         self._tell(call, *self._set_points)
-        if call is RESET_DRIVER:
+        if call is Call.RESET_DRIVER:
             self._set_points[:] = FIRST_SET_POINTS
             self._stop_action = "coast"
             self._set_polarity("normal")

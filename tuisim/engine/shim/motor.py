@@ -11,7 +11,9 @@ from tuisim.base.errors import NotSimulated
 from tuisim.engine.core.brick_motor import BrickMotor
 from tuisim.engine.core.browser_motor import BrowserMotor
 from tuisim.engine.core.commands.calls import MAX_NUMBER, Call
+from tuisim.engine.core.commands.driver import STOP_ACTIONS
 from tuisim.engine.core.commands.table import obey
+from tuisim.engine.core.driver.motor import Command
 from tuisim.engine.core.hub_spec import HUB_MOTORS
 from tuisim.engine.core.motors import MEDIUM_MAX_SPEED_DPS, POSITION, STOPPED, TIMED, Motor
 from tuisim.engine.core.profile import MS
@@ -21,16 +23,7 @@ from tuisim.engine.runs.readings import MODES_BY_KIND, READING_CODES
 from tuisim.engine.shim.device_files import NumberWriter, Reader, SimDevice, Writer, plain, refuse
 from tuisim.engine.shim.session import DeviceSession
 
-COMMANDS = (
-    "run-forever",
-    "run-to-abs-pos",
-    "run-to-rel-pos",
-    "run-timed",
-    "run-direct",
-    "stop",
-    "reset",
-)
-STOP_ACTIONS = ("coast", "brake", "hold")
+COMMANDS = (*Command,)
 POLARITIES = ("normal", "inversed")
 RAMPS = ("ramp_up_sp", "ramp_down_sp")
 COUNT_PER_ROT = 360

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from tuisim.engine.core.driver.jiffies import Jiffies
-from tuisim.engine.core.driver.motor import Command, DriverMotor, SetPoints
+from tuisim.engine.core.driver.motor import STATES, Command, DriverMotor, SetPoints
 from tuisim.engine.core.driver.regulator import MODELS, StopAction
 
 MS = 1_000_000
@@ -157,7 +157,7 @@ class Bench:
 
     def _look(self, now_ms: int) -> None:
         for number, motor in enumerate(self.motors):
-            state = " ".join(motor.states)
+            state = STATES[motor.state_bits]
             if self._last_states[number] != state:
                 self._last_states[number] = state
                 self.states.append([now_ms, number, state])

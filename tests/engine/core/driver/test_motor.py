@@ -13,8 +13,9 @@ import pytest
 from tests.cases import for_each
 from tests.engine.core.driver.lab import MS, Bench, give, load_recordings, renumber
 from tuisim.engine.core.driver.jiffies import Jiffies
-from tuisim.engine.core.driver.motor import Command, DriverMotor, State
+from tuisim.engine.core.driver.motor import Command, DriverMotor
 from tuisim.engine.core.driver.regulator import MODELS, StopAction
+from tuisim.engine.core.motor_columns import RAMPING
 
 RECORDINGS = load_recordings()
 MAX_TENTHS_DEG = 10
@@ -113,7 +114,7 @@ def play(motor: DriverMotor, seed: int, looks: random.Random | None) -> Iterator
             motor.axle.low_deg, motor.axle.high_deg = chance.choice(
                 ((-inf, inf), (angle_deg, inf), (-inf, angle_deg), (angle_deg - 30, angle_deg + 30))
             )
-        yield motor.position, motor.speed_dps, motor.duty, motor.axle.angle_deg, motor.states
+        yield motor.position, motor.speed_dps, motor.duty, motor.axle.angle_deg, motor.state_bits
 
 
 @for_each(seed=range(30))
@@ -164,7 +165,7 @@ def test_a_ramp_that_turns_back_goes_through_0() -> None:
         motor.run_until(now_ms * MS)
         speeds.append(motor.speed_control.setpoint)
     assert speeds == sorted(speeds, reverse=True)
-    assert 0 in speeds and speeds[-1] == -400 and State.RAMPING not in motor.states
+    assert 0 in speeds and speeds[-1] == -400 and not motor.state_bits & RAMPING
 
 
 def test_a_relative_move_after_another_begins_where_that_was_to_end() -> None:

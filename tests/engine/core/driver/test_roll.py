@@ -55,7 +55,7 @@ def test_a_coasting_motor_computed_at_once_equals_single_steps(seed: int, kind: 
         assert rolling.axle.speed_dps == pytest.approx(stepped.axle.speed_dps, abs=1e-9)
         assert rolling.position == stepped.position
         assert abs(rolling.speed_dps - stepped.speed_dps) <= 1
-        assert rolling.states == stepped.states
+        assert rolling.state_bits == stepped.state_bits
 
 
 @for_each(kind=ROLLS, seed=range(20))

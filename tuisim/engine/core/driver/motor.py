@@ -47,21 +47,15 @@ RUN_FOREVER, RUN_TO_ABS_POS, RUN_TO_REL_POS, RUN_TIMED, RUN_DIRECT, STOP, RESET 
 """Members as plain names: to look one up in its class takes longer than a call."""
 
 
-class State(StrEnum):
-    """The states that the attribute `state` of a motor can list, in this order."""
-
-    RUNNING = "running"
-    RAMPING = "ramping"
-    HOLDING = "holding"
-    OVERLOADED = "overloaded"
-    STALLED = "stalled"
-
-
 STATES = tuple(
-    tuple(state for state in State if STATE_BITS[state] & bits)
+    " ".join(
+        state
+        for state in ("running", "ramping", "holding", "overloaded", "stalled")
+        if STATE_BITS[state] & bits
+    )
     for bits in range(2 * max(STATE_BITS.values()))
 )
-"""The list in `state`, by the bits that are recorded."""
+"""The text of the attribute `state`, by the bits that are recorded."""
 
 
 class SetPoints(NamedTuple):
@@ -114,7 +108,6 @@ class DriverMotor(MotorDriver):
         "_ends_at_target",
         "_jiffies",
         "_last_command",
-        "_look_ns",
         "_looked_bits",
         "_ramp",
         "_ramp_goal_dps",
@@ -128,6 +121,7 @@ class DriverMotor(MotorDriver):
         "active",
         "is_at_rest",
         "is_ramping",
+        "next_look_ns",
         "noticed_ns",
     )
 
@@ -152,8 +146,9 @@ class DriverMotor(MotorDriver):
     def start_clock(self, jiffies: Jiffies) -> None:
         """Set the kernel's clock, before any time has passed."""
         self._jiffies = jiffies
-        self._look_ns = jiffies.begin_ns(jiffies.first + jiffies.first_look)
-        self._due_ns = self._look_ns
+        self.next_look_ns = jiffies.begin_ns(jiffies.first + jiffies.first_look)
+        """When the driver next checks whether the motor's state has changed, in ns."""
+        self._due_ns = self.next_look_ns
         """When a timer or the driver's next check is due, in ns."""
 
     @property
@@ -173,11 +168,6 @@ class DriverMotor(MotorDriver):
         return bits
 
     @property
-    def states(self) -> tuple[State, ...]:
-        """The present states of the motor, as its attribute `state` lists them."""
-        return STATES[self.state_bits]
-
-    @property
     def ends_alone(self) -> bool:
         """Whether the motor runs, and will stop by itself: at a time, at a position, or at the end of a ramp."""
         return self.is_running and (
@@ -188,17 +178,12 @@ class DriverMotor(MotorDriver):
 
     # Time
 
-    @property
-    def next_look_ns(self) -> int:
-        """When the driver next checks whether the motor's state has changed, in ns."""
-        return self._look_ns
-
     def find_last_look_ns(self, time_ns: int) -> int:
         """Return the time in ns of the driver's last check of the motor's state that is not after `time_ns`.
 
         If no check remains before `time_ns`, return the time of the next one.
         """
-        return self._look_ns + max(0, time_ns - self._look_ns) // LOOK_NS * LOOK_NS
+        return self.next_look_ns + max(0, time_ns - self.next_look_ns) // LOOK_NS * LOOK_NS
 
     def run_until(self, time_ns: int) -> None:
         """Run all steps of the control and all timers that are due until `time_ns`."""
@@ -279,10 +264,10 @@ class DriverMotor(MotorDriver):
 
     def _skip_looks(self, time_ns: int) -> None:
         """Skip the driver's checks up to a time: the motor's state cannot change until then."""
-        if self._look_ns <= time_ns:
-            passed = (time_ns - self._look_ns) // LOOK_NS + 1
-            self._look_ns += passed * LOOK_NS
-            self._due_ns = min(self._timers_ns, self._look_ns)
+        if self.next_look_ns <= time_ns:
+            passed = (time_ns - self.next_look_ns) // LOOK_NS + 1
+            self.next_look_ns += passed * LOOK_NS
+            self._due_ns = min(self._timers_ns, self.next_look_ns)
 
     def _fire(self) -> None:
         """Run the timer that is due: the end of a timed move, a change of a ramp, or a check of the state."""
@@ -294,8 +279,8 @@ class DriverMotor(MotorDriver):
             self._set_timers(timed_ns=self._timed_ns)
             self._continue_ramp(time_ns)
         else:
-            self._look_ns += LOOK_NS
-            self._due_ns = min(self._timers_ns, self._look_ns)
+            self.next_look_ns += LOOK_NS
+            self._due_ns = min(self._timers_ns, self.next_look_ns)
             bits = self.state_bits
             if bits != self._looked_bits:
                 self._looked_bits = bits
@@ -304,7 +289,7 @@ class DriverMotor(MotorDriver):
     def _set_timers(self, ramp_ns: int = NEVER_NS, timed_ns: int = NEVER_NS) -> None:
         self._ramp_ns, self._timed_ns = ramp_ns, timed_ns
         self._timers_ns = min(ramp_ns, timed_ns)
-        self._due_ns = min(self._timers_ns, self._look_ns)
+        self._due_ns = min(self._timers_ns, self.next_look_ns)
 
     # Commands
 

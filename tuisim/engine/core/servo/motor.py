@@ -97,7 +97,6 @@ class ServoMotor:
         "_fastest_deg",
         "_free_dps",
         "_free_us",
-        "_guide",
         "_hz",
         "_jump_deg",
         "_past",
@@ -109,6 +108,7 @@ class ServoMotor:
         "blocked_ticks",
         "control",
         "duty",
+        "guide",
         "kind",
         "law",
         "mode",
@@ -130,7 +130,8 @@ class ServoMotor:
         """-1 if the program counts against the motor's own direction."""
         self.control = Controller(compute_motor_settings(law, kind))
         """The motor's own controller."""
-        self._guide: Guide | None = None
+        self.guide: Guide | None = None
+        """The controller or drive base that the motor follows; None while it runs freely."""
         self._ending = Ending.HOLD
         self._course: int | None = 0
         """The motor's position in the program's direction, in half thousandths of a count; None if held back."""
@@ -147,14 +148,9 @@ class ServoMotor:
     # The state of the motor that a program can read
 
     @property
-    def guide(self) -> Guide | None:
-        """The controller or drive base that the motor follows; None while it runs freely."""
-        return self._guide
-
-    @property
     def follows_base(self) -> bool:
         """Whether the motor follows a drive base, not its own controller."""
-        return self._guide not in (None, self.control)
+        return self.guide not in (None, self.control)
 
     @property
     def milli(self) -> int:
@@ -171,8 +167,8 @@ class ServoMotor:
 
         It is in thousandths of a count.
         """
-        if self._guide is not None and self._course is not None:
-            return self._guide.find_target(now_us, self) // 2
+        if self.guide is not None and self._course is not None:
+            return self.guide.find_target(now_us, self) // 2
         return self.milli
 
     def find_counts_per_s(self, now_us: int, window_ms: int = 0) -> int:
@@ -189,9 +185,9 @@ class ServoMotor:
                 turned_deg = max(0.0, begin_tick - tick) * (after - before)
                 begin_milli = (before + turned_deg) * self.sign * MILLI * COUNTS_PER_DEG
                 return round((self.find_milli(now_us) - begin_milli) / window_ms)
-        if self._guide is None:
+        if self.guide is None:
             return round(self._free_dps * self.sign * COUNTS_PER_DEG)
-        return self.counts_per_s if self._course is None else round(self._guide.rate(now_us, self))
+        return self.counts_per_s if self._course is None else round(self.guide.rate(now_us, self))
 
     def read_turn(self, now_ns: int) -> tuple[float, float]:
         """Return the position in degrees and the speed in degrees per second that a program reads at a time.
@@ -239,15 +235,15 @@ class ServoMotor:
             guide: The guide; None for the motor's own controller, which has just got its trajectory.
             ending: What the motor does at the end of the motion.
         """
-        if self._guide is None:
+        if self.guide is None:
             self._course = round(self.position_deg * self.sign * HALVES_PER_DEG)
         if guide is not None:
             self.control.release()
-        self._guide = guide or self.control
+        self.guide = guide or self.control
         self._ending = ending
         self.control.settles = ending == Ending.HOLD
         timed = guide is None and self.control.timed
-        if self._guide.end_us is None:
+        if self.guide.end_us is None:
             self.mode = FOREVER
         elif timed:
             self.mode = TIMED
@@ -262,7 +258,7 @@ class ServoMotor:
     @property
     def lets_go(self) -> bool:
         """Whether the motor coasts or brakes after the motion that it follows, instead of holding."""
-        return self._guide is not None and self._ending not in (Ending.HOLD, Ending.NONE)
+        return self.guide is not None and self._ending not in (Ending.HOLD, Ending.NONE)
 
     def _limit_speed(self) -> None:
         """Store the highest speed that the motor reaches with the highest power that its controller allows."""
@@ -276,13 +272,13 @@ class ServoMotor:
             now_us: The present time.
             duty: In hundredths of a percent; 0 brakes, None coasts.
         """
-        guide = self._guide
+        guide = self.guide
         self._free_us = now_us
         if guide is not None:
             there = self.find_milli(now_us) * self.sign / (MILLI * COUNTS_PER_DEG)
             self._free_dps = self.find_counts_per_s(now_us) * self.sign / COUNTS_PER_DEG
             self._jump_deg = there - self.position_deg
-            self._guide = self._course = None
+            self.guide = self._course = None
             self.control.release()
         self.duty = None if duty is None else duty * self.sign
         self.blocked_ticks = 0
@@ -299,7 +295,7 @@ class ServoMotor:
         self.position_deg += shift * self.sign / (MILLI * COUNTS_PER_DEG)
         if self._course is not None:
             self._course += 2 * shift
-        if self._guide is not None:
+        if self.guide is not None:
             self.control.hold(now_us, milli)
             windowed = self.control.settings.speed_window_ms
             self.follow(ending=self._ending if windowed else Ending.HOLD)
@@ -309,7 +305,7 @@ class ServoMotor:
     @property
     def goal_deg(self) -> float:
         """Position in degrees at which the motor's motion ends; its present position if the motion has no end."""
-        guide = self._guide
+        guide = self.guide
         end_us = guide.end_us if guide else None
         return (
             self.position_deg
@@ -320,7 +316,7 @@ class ServoMotor:
     @property
     def end_tick(self) -> float:
         """The tick at which the motor's present motion ends; `ENDLESS` if it does not end."""
-        end_us = self._guide.end_us if self._guide else None
+        end_us = self.guide.end_us if self.guide else None
         return ENDLESS if end_us is None else end_us / self._tick_us
 
     def _convert_to_deg(self, halves: int) -> float:
@@ -352,9 +348,9 @@ class ServoMotor:
     @property
     def moving_dps(self) -> float:
         """Current speed of the wheel in degrees per second, negative if it turns backwards."""
-        if self._guide is None or self.mode == STOPPED:
+        if self.guide is None or self.mode == STOPPED:
             return self.speed_dps
-        return self._guide.rate(self._tick * self._tick_us, self) * self.sign / COUNTS_PER_DEG
+        return self.guide.rate(self._tick * self._tick_us, self) * self.sign / COUNTS_PER_DEG
 
     @property
     def counting_dps(self) -> float:
@@ -364,7 +360,7 @@ class ServoMotor:
     @property
     def aim_dps(self) -> float:
         """Speed of the wheel at the end of the present segment, in degrees per second; negative backwards."""
-        guide = self._guide
+        guide = self.guide
         if guide is None:
             return self.speed_dps
         end_us = guide.find_segment_end_us(self._tick * self._tick_us)
@@ -392,7 +388,7 @@ class ServoMotor:
     def _count_following_ticks(self, tick: int) -> int:
         if self.mode == STOPPED:
             return ENDLESS
-        guide = self._guide
+        guide = self.guide
         now_us = tick * self._tick_us
         if guide is None or self._course is None or not self._can_follow(guide, now_us):
             return 0
@@ -416,11 +412,11 @@ class ServoMotor:
 
     def glide(self, ticks: int) -> Glide:
         """Advance the motor by several ticks, all in one segment of its trajectory; return its motion in each."""
-        if self.mode == STOPPED or self._guide is None or self._course is None:
+        if self.mode == STOPPED or self.guide is None or self._course is None:
             return Glide([0.0] * ticks, [self.position_deg] * ticks)
         tick_us = self._tick_us
         times_us = range((self._tick + 1) * tick_us, (self._tick + ticks + 1) * tick_us, tick_us)
-        halves = [self._guide.find_target(time_us, self) for time_us in times_us]
+        halves = [self.guide.find_target(time_us, self) for time_us in times_us]
         turns = [
             self._convert_to_deg(after - before)
             for before, after in pairwise([self._course, *halves])
@@ -440,7 +436,7 @@ class ServoMotor:
             return 0.0
         self._past.append((tick - 1, self.position_deg))
         now_us = tick * self._tick_us
-        guide = self._guide
+        guide = self.guide
         if guide is None:
             return self._run_freely(now_us)
         if self._course is None:
@@ -482,7 +478,7 @@ class ServoMotor:
 
         Do nothing if the motor has to follow its guide for longer, until it is at rest.
         """
-        guide = self._guide
+        guide = self.guide
         holds = self._ending == Ending.HOLD
         rate = self.measure_start(now_us).rate
         if not holds and guide is not None and not guide.lets_go(now_us, rate):
@@ -492,7 +488,7 @@ class ServoMotor:
         self.blocked_ticks = 0
         if not holds and guide is not None:
             self.control.release()
-            self._guide = None
+            self.guide = None
             self._free_dps = 0.0
             self.duty = 0 if self._ending in BRAKING else None
 
