@@ -33,7 +33,7 @@ from tuisim.engine.shim.motor import KINDS, BrowserTacho, ServoTacho, Tacho, Tac
 from tuisim.engine.shim.power import BATTERY, POWER_CLASS, Battery
 from tuisim.engine.shim.sensors import DEVICES, ColorDevice, LegoSensor
 from tuisim.engine.shim.session import DeviceSession
-from tuisim.engine.shim.unsupported.devices import PORT_MODES, of_driver, refusal
+from tuisim.engine.shim.unsupported.devices import PORT_MODES, of_driver
 
 PORT_CLASS, MOTOR_CLASS, SENSOR_CLASS = "lego-port", "tacho-motor", "lego-sensor"
 """Classes of devices, by their kernel names."""
@@ -141,7 +141,7 @@ class LegoPort:
             raise refuse(text)
         self._session.command()
         if self._plugged is None and text in PORT_MODES:
-            raise refusal("ev3dev2.port.LegoPort.mode", PORT_MODES[text], text)
+            raise NotSimulated(*PORT_MODES[text].explain("ev3dev2.port.LegoPort.mode", text))
         if self._plugged is not None and text not in (AUTO, self._plugged.mode):
             raise NotSimulated(
                 f"ev3dev2.port.LegoPort.mode: {text!r} would disconnect {self._plugged.driver_name} from {self._port}",
@@ -154,7 +154,7 @@ class LegoPort:
         if self._mode in (AUTO, "raw"):
             raise OSError(errno.EOPNOTSUPP, "set_device")
         if (kind := of_driver(text)) is not None:
-            raise refusal("ev3dev2.port.LegoPort.set_device", kind, text)
+            raise NotSimulated(*kind.explain("ev3dev2.port.LegoPort.set_device", text))
         if self._plugged is None or text != self._plugged.driver_name:
             there = self._plugged.driver_name if self._plugged else "nothing"
             raise NotSimulated(

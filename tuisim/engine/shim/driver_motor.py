@@ -16,7 +16,6 @@ from tuisim.engine.core.driver.simulated import SimulatedMotor
 from tuisim.engine.protocol import MotorRegisters
 from tuisim.engine.shim.device_files import NumberWriter, Reader, SimDevice, refuse
 from tuisim.engine.shim.motor import COMMANDS, MAX_SET_POINT, SignedTacho
-from tuisim.engine.shim.session import DeviceSession
 
 SET_POINTS = (
     "speed_sp",
@@ -38,10 +37,7 @@ class DriverTacho(SignedTacho):
 
     _motor: SimulatedMotor
 
-    def __init__(
-        self, session: DeviceSession, motor: SimulatedMotor, port: str, kind: str = "large"
-    ) -> None:
-        super().__init__(session, motor, port, kind)
+    def _set_up(self) -> None:
         self._set_points = [*FIRST_SET_POINTS]
         self._look = lambda: self._now().noticed_ns
 

@@ -68,6 +68,11 @@ class Tacho(ABC):
         self._last_command = ""
         self._look: Reader | None = None
         """Returns a value that differs after each change of state that the driver reports; None: the state."""
+        self._set_up()
+
+    @abstractmethod
+    def _set_up(self) -> None:
+        """Set the values that a program can write, and what else the class needs, as at the start of a run."""
 
     @abstractmethod
     def registers(self) -> MotorRegisters:
@@ -172,10 +177,7 @@ class TachoMotor(SignedTacho):
 
     _motor: BrickMotor
 
-    def __init__(
-        self, session: DeviceSession, motor: BrickMotor, port: str, kind: str = "large"
-    ) -> None:
-        super().__init__(session, motor, port, kind)
+    def _set_up(self) -> None:
         self._numbers: dict[str, int] = {}
         self._direct = False
         self._standstill_tick = 0
@@ -392,10 +394,7 @@ class BrowserTacho(Tacho):
 
     _motor: BrowserMotor
 
-    def __init__(
-        self, session: DeviceSession, motor: BrowserMotor, port: str, kind: str = "large"
-    ) -> None:
-        super().__init__(session, motor, port, kind)
+    def _set_up(self) -> None:
         self._numbers = dict.fromkeys(WITHOUT_EFFECT, 0)
         self._position_sp = 0
         self._time_sp_s = 0.0
@@ -481,6 +480,8 @@ class ServoTacho(Tacho):
     """The driver of one motor that the Pybricks firmware moves: it shows the motor's state, and refuses commands."""
 
     _motor: ServoMotor
+
+    def _set_up(self) -> None: ...
 
     def device(self) -> SimDevice:
         """Return the motor as a device of `/sys/class/tacho-motor`."""

@@ -75,6 +75,20 @@ class Controller:
             wheels slide on the floor and turn on, and so do their encoders.
     """
 
+    __slots__ = (
+        "_behind_milli",
+        "_goal",
+        "_paused_us",
+        "_slips",
+        "_stalled_us",
+        "duty_limit",
+        "seeks_stall",
+        "settings",
+        "settles",
+        "timed",
+        "trajectory",
+    )
+
     def __init__(self, settings: ControlSettings, *, slips: bool = False) -> None:
         self.settings = settings
         self._slips = slips

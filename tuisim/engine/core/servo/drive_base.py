@@ -111,6 +111,25 @@ class DriveBase:
         find_gyro_deg: Returns the heading that the robot's gyro shows, clockwise.
     """
 
+    __slots__ = (
+        "_at_us",
+        "_behind_us",
+        "_ending",
+        "_find_gyro_deg",
+        "_goal",
+        "_millis",
+        "_offset",
+        "_pace",
+        "_slowing",
+        "distance",
+        "heading",
+        "left",
+        "motors",
+        "right",
+        "uses_gyro",
+        "usual",
+    )
+
     def __init__(
         self,
         left: ServoMotor,

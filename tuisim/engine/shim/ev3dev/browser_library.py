@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections import OrderedDict
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from tuisim.engine.core.profile import MS
@@ -99,13 +99,29 @@ def _wait(session: DeviceSession, library: str) -> Callable[..., bool]:
     return wait
 
 
-def _patch_moves(motor: Any) -> None:
-    def start(one: Any, command: str, brake: bool, block: bool) -> None:
-        one._set_brake(brake)
-        getattr(one, command)()
-        if block:
-            _block(motor, one)
+def _start(
+    motor: Any, motors: Sequence[Any], command: str, brake: bool | None, block: bool
+) -> None:
+    """Give motors a command.
 
+    Args:
+        motor: The module.
+        motors: The motors.
+        command: The name of the method that gives the command.
+        brake: Whether the stop action is `hold`; otherwise it is `coast`; None: it stays as it is.
+        block: Whether to wait until the motors have stopped.
+    """
+    for one in motors if brake is not None else ():
+        one._set_brake(brake)
+    for one in motors:
+        getattr(one, command)()
+    if block:
+        for one in motors:
+            one.wait_until("running", timeout=motor.WAIT_RUNNING_TIMEOUT)
+            one.wait_until_not_moving()
+
+
+def _patch_moves(motor: Any) -> None:
     def on_for_degrees(
         self: Any, speed: Any, degrees: float, brake: bool = True, block: bool = True
     ) -> None:
@@ -123,7 +139,7 @@ def _patch_moves(motor: Any) -> None:
             native = round_half_up(native)
         self.position_sp = round_half_up(-degrees if native < 0 else degrees)
         self.speed_sp = round_half_up(abs(native))
-        start(self, "run_to_rel_pos", brake, block)
+        _start(motor, [self], "run_to_rel_pos", brake, block)
 
     def on_for_rotations(
         self: Any, speed: Any, rotations: float, brake: bool = True, block: bool = True
@@ -151,7 +167,7 @@ def _patch_moves(motor: Any) -> None:
         """
         _refuse_negative(seconds)
         self.speed_sp, self.time_sp = round_half_up(self._speed_native_units(speed)), seconds
-        start(self, "run_timed", brake, block)
+        _start(motor, [self], "run_timed", brake, block)
 
     def on(self: Any, speed: Any, brake: bool = True, block: bool = False) -> None:
         """Rotate the motor at a speed until the next command.
@@ -162,7 +178,7 @@ def _patch_moves(motor: Any) -> None:
             block: Whether the call returns only when the motor has stopped.
         """
         self.speed_sp = round_half_up(self._speed_native_units(speed))
-        start(self, "run_forever", brake, block)
+        _start(motor, [self], "run_forever", brake, block)
 
     def on_to_position(
         self: Any, speed: Any, position: float, brake: bool = True, block: bool = True
@@ -176,7 +192,7 @@ def _patch_moves(motor: Any) -> None:
             block: Whether the call returns only when the motor has stopped.
         """
         self.speed_sp, self.position_sp = round_half_up(self._speed_native_units(speed)), position
-        start(self, "run_to_abs_pos", brake, block)
+        _start(motor, [self], "run_to_abs_pos", brake, block)
 
     for method in (on, on_for_degrees, on_for_rotations, on_for_seconds, on_to_position):
         setattr(motor.Motor, method.__name__, method)
@@ -185,11 +201,6 @@ def _patch_moves(motor: Any) -> None:
 def _refuse_negative(seconds: float) -> None:
     if seconds < 0:
         raise ValueError(f"seconds is negative ({seconds})")
-
-
-def _block(motor: Any, one: Any) -> None:
-    one.wait_until("running", timeout=motor.WAIT_RUNNING_TIMEOUT)
-    one.wait_until_not_moving()
 
 
 def _patch_sets(motor: Any) -> None:
@@ -201,23 +212,12 @@ def _patch_sets(motor: Any) -> None:
         self.desc = desc
         self.reset()
 
-    def block(self: Any) -> None:
-        for one in self.motors.values():
-            _block(motor, one)
-
     motor.MotorSet.__init__ = __init__
-    motor.MotorSet._block = block
 
 
 def _patch_pairs(motor: Any) -> None:
     def motors_of(pair: Any) -> tuple[Any, Any]:
         return pair.left_motor, pair.right_motor
-
-    def start(pair: Any, command: str, block: bool) -> None:
-        for one in motors_of(pair):
-            getattr(one, command)()
-        if block:
-            pair._block()
 
     def on_for_degrees(
         self: Any,
@@ -245,8 +245,7 @@ def _patch_pairs(motor: Any) -> None:
                 degrees if abs(speed) == fastest else abs(speed / fastest) * degrees
             )
             one.position_sp, one.speed_sp = -part if speed < 0 else part, abs(speed)
-            one._set_brake(brake)
-        start(self, "run_to_rel_pos", block)
+        _start(motor, motors_of(self), "run_to_rel_pos", brake, block)
 
     def on_for_seconds(
         self: Any,
@@ -268,8 +267,7 @@ def _patch_pairs(motor: Any) -> None:
         speeds = self._unpack_speeds_to_native_units(left_speed, right_speed)
         for one, speed in zip(motors_of(self), speeds, strict=True):
             one.speed_sp, one.time_sp = round_half_up(speed), seconds
-            one._set_brake(brake)
-        start(self, "run_timed", block)
+        _start(motor, motors_of(self), "run_timed", brake, block)
 
     def on(self: Any, left_speed: Any, right_speed: Any) -> None:
         """Rotate both motors of a pair until the next command, each at its own speed.
@@ -280,7 +278,7 @@ def _patch_pairs(motor: Any) -> None:
         speeds = self._unpack_speeds_to_native_units(left_speed, right_speed)
         for one, speed in zip(motors_of(self), speeds, strict=True):
             one.speed_sp = round_half_up(speed)
-        start(self, "run_forever", False)
+        _start(motor, motors_of(self), "run_forever", None, False)
 
     for method in (on, on_for_degrees, on_for_seconds):
         setattr(motor.MoveTank, method.__name__, method)

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from fnmatch import fnmatchcase
 from typing import Any
 
-from tuisim.base.errors import NotSimulated, shortened
+from tuisim.base.errors import NotSimulated
 from tuisim.engine.core.sensors import SENSORS
 from tuisim.engine.shim.motor import KINDS
 from tuisim.engine.shim.unsupported.modules import CAMERA, Hardware, refused_as
@@ -130,29 +130,6 @@ def of_driver(name: str) -> Hardware | None:
     return next((kind for pattern, kind in DRIVERS.items() if fnmatchcase(name, pattern)), _OTHER)
 
 
-def refusal(where: str, kind: Hardware, name: str = "") -> NotSimulated:
-    """Return the error for the use of hardware that is not simulated.
-
-    Args:
-        where: The name, port or mode that the program used.
-        kind: The hardware.
-        name: Its driver, address or mode, as the program wrote it; empty for none.
-    """
-    return NotSimulated(*_told(where, kind, name))
-
-
-def _told(where: str, kind: Hardware, name: str) -> tuple[str, str]:
-    """Return message and hint of the error for the use of hardware that is not simulated.
-
-    Args:
-        where: The name, port or mode that the program used.
-        kind: The hardware.
-        name: Its driver, address or mode, as the program wrote it; empty for none.
-    """
-    called = f" ({shortened(name, 80)})" if name else ""
-    return f"{where}: {kind.title}{called} is not simulated", kind.instead
-
-
 def foreign_mode(mode: str, port: str, plugged: str) -> NotSimulated | None:
     """Return the error for a mode of a sensor that is not simulated, such as a compass; None for any other mode.
 
@@ -166,7 +143,7 @@ def foreign_mode(mode: str, port: str, plugged: str) -> NotSimulated | None:
     return (
         None
         if kind is None
-        else refusal(f"mode {mode} on {port}, where {plugged} is", kind, driver)
+        else NotSimulated(*kind.explain(f"mode {mode} on {port}, where {plugged} is", driver))
     )
 
 
@@ -180,10 +157,11 @@ def refused_device(device: Any, class_name: str, missing: type[Exception]) -> Ex
             because a program may catch it to find out which devices there are.
     """
     wanted: Mapping[str, object] = device.kwargs
-    refusal = _refused(class_name, _texts(wanted.get("driver_name")), _texts(wanted.get("address")))
-    if refusal is None:
+    found = _refused(class_name, _texts(wanted.get("driver_name")), _texts(wanted.get("address")))
+    if found is None:
         return None
-    return refused_as(missing, *_told(_named(type(device)), *refusal))
+    kind, name = found
+    return refused_as(missing, *kind.explain(_named(type(device)), name))
 
 
 def _refused(

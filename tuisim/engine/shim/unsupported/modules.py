@@ -17,7 +17,7 @@ from pkgutil import iter_modules
 from typing import Any, NoReturn
 
 from tuisim.base.data_class import dataclass
-from tuisim.base.errors import NotSimulated, closest
+from tuisim.base.errors import NotSimulated, closest, shortened
 from tuisim.base.repository import find_module_folder
 from tuisim.base.source import SPIKE_MODULES
 from tuisim.engine.core.profile import Library
@@ -72,6 +72,16 @@ class Hardware:
     def told_to(self, library: Library) -> Hardware:
         """Return this hardware with advice that uses the names of one library."""
         return replace(self, instead=self.instead.format_map(asdict(INSTEAD[library])))
+
+    def explain(self, where: str, name: str = "") -> tuple[str, str]:
+        """Return the message and the hint of the error for using this hardware.
+
+        Args:
+            where: The name, port or mode that the program used.
+            name: Its driver, address or mode, as the program wrote it; empty for none.
+        """
+        called = f" ({shortened(name, 80)})" if name else ""
+        return f"{where}: {self.title}{called} is not simulated", self.instead
 
 
 _SMBUS = Hardware("the I2C bus of the brick", _BUS, ("SMBus",))
@@ -168,16 +178,6 @@ _ERRORS = ("Error", "Exception", "Timeout")
 """Ends of the names of exceptions, which a program names in its handlers."""
 
 
-def _told(name: str, hardware: Hardware) -> tuple[str, str]:
-    """Return the message and the hint of the error for using hardware that is not simulated.
-
-    Args:
-        name: The module, or the name in a module, that the program uses.
-        hardware: The hardware for which it is.
-    """
-    return f"{name}: {hardware.title} is not simulated", hardware.instead
-
-
 def refused_as(kind: type[Exception], message: str, hint: str) -> Exception:
     """Return an error that is both NotSimulated and of another class, so that programs can catch it as either."""
     both: Any = type("NotSimulated", (NotSimulated, kind), {"__module__": NotSimulated.__module__})
@@ -195,7 +195,7 @@ class _Part(type):
     hardware: Hardware
 
     def _use(cls, *_: object, **__: object) -> NoReturn:
-        raise NotSimulated(*_told(cls.full_name, cls.hardware))
+        raise NotSimulated(*cls.hardware.explain(cls.full_name))
 
     __call__ = __getitem__ = __iter__ = __len__ = __int__ = __index__ = __float__ = __enter__ = (
         __exit__
@@ -325,7 +325,7 @@ class HardwareFinder:
             NotSimulated: the module is for other computers only; the error is also an ImportError.
         """
         if (top := spec.name.partition(".")[0]) in ELSEWHERE:
-            raise refused_as(ImportError, *_told(spec.name, ELSEWHERE[top].told_to(self._library)))
+            raise refused_as(ImportError, *ELSEWHERE[top].told_to(self._library).explain(spec.name))
         module = HardwareModule(spec.name, ON_THE_BRICK[top].told_to(self._library))
         if spec.name == top:
             vars(module)["__all__"] = list(ON_THE_BRICK[top].names)
@@ -363,7 +363,7 @@ def refuse_bluetooth(module: types.ModuleType, library: Library) -> None:
     @wraps(real)
     def __init__(self: Any, family: int = -1, *given: Any, **named: Any) -> None:  # noqa: N807
         if family == names["AF_BLUETOOTH"]:
-            raise NotSimulated(*_told("socket.AF_BLUETOOTH", told))
+            raise NotSimulated(*told.explain("socket.AF_BLUETOOTH"))
         real(self, family, *given, **named)
 
     module.socket.__init__ = __init__
