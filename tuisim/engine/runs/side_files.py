@@ -244,11 +244,6 @@ def read_modules(run_folder: Path) -> list[OwnModule]:
     """
     path = run_folder / MODULES_FILE
     with _convert_errors(path):
-        try:
-            # Most runs have no such file, and to find that out must be quick, as each run does it.
-            _lstat(f"{run_folder}{os.sep}{MODULES_FILE}")
-        except FileNotFoundError:
-            return []
         return [
             OwnModule(
                 row["name"],
@@ -345,7 +340,6 @@ class FilesRead:
 
 
 _stat = os.stat
-_lstat = os.lstat
 _open = os.open
 _read = os.read
 _close = os.close

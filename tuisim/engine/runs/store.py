@@ -160,19 +160,15 @@ class RunStore:
         Raises:
             LogError: the run does not exist, or cannot be written.
         """
-        run_id = run.id
-        if not os.path.isdir(run.folder):
-            raise LogError(f"no run {run_id!r}", file=str(self._runs))
+        folder = self._find_folder(run.id)
         with lock_home(self.home):
-            write_run_file(
-                run.folder, {**run.data, "tags": _read_tags(run.folder), "end": asdict(end)}
-            )
-        output = OutputView(run.folder, end.end is End.FALSIFIED)
+            write_run_file(folder, {**run.data, "tags": _read_tags(folder), "end": asdict(end)})
+        output = OutputView(folder, end.end is End.FALSIFIED)
         samples = output.count_rows()[1] if output.length <= _COUNT_AT_ONCE_BYTES else None
         # If the catalogue cannot be written now, it will be updated later.
         with suppress(LogError):
             self._catalogue.update(
-                run_id,
+                run.id,
                 end=end.end,
                 ticks=end.tick,
                 time_s=end.time_ns / NS_PER_S,
@@ -206,9 +202,7 @@ class RunStore:
         for word in words:
             if word.split() != [word]:
                 raise LogError(f"{word!r} is not a tag", "a tag is one word without blanks")
-        folder = self.folder(run_id)
-        if not os.path.isdir(folder):
-            raise LogError(f"no run {run_id!r}", file=str(self._runs))
+        folder = self._find_folder(run_id)
         with lock_home(self.home):
             write_run_file(folder, {**read_run_file(folder), "tags": words})
         self._catalogue.update(run_id, tags=" ".join(words))
@@ -219,9 +213,7 @@ class RunStore:
         Raises:
             LogError: the run does not exist, is still running, or cannot be deleted.
         """
-        folder = self.folder(run_id)
-        if not os.path.isdir(folder):
-            raise LogError(f"no run {run_id!r}", file=str(self._runs))
+        folder = self._find_folder(run_id)
         if not _has_end(folder) and find_state_without_end(folder) is Unended.RUNNING:
             raise LogError(f"run {run_id} is still running", "stop it first")
         try:
@@ -322,6 +314,17 @@ class RunStore:
             raise LogError(f"no run {run!r}", file=str(self.home)) from error
 
     # Internals
+
+    def _find_folder(self, run_id: str) -> Path:
+        """Return the folder of a run.
+
+        Raises:
+            LogError: it does not exist.
+        """
+        folder = self.folder(run_id)
+        if not os.path.isdir(folder):
+            raise LogError(f"no run {run_id!r}", file=str(self._runs))
+        return folder
 
     def _create_folder(self, now: datetime) -> tuple[str, Path, int]:
         """Create the folder of a new run, and lock it.

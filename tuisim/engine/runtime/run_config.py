@@ -118,7 +118,7 @@ _VALUES: dict[str, tuple[str, Callable[[Any], object]]] = {
 
 
 def _parse_program(plain: Mapping[str, Any]) -> Program:
-    values = {
+    values: dict[str, Any] = {
         name: tuple(value) if isinstance(value, list) else value for name, value in plain.items()
     }
     # It follows from the text.

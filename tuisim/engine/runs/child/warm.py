@@ -13,9 +13,9 @@ import threading
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from typing import Any, Protocol
+from typing import Any, TypeAlias
 
-from tuisim.engine.runs.child.isolation import is_readable
+from tuisim.engine.runs.child.isolation import IsolatedChild, is_readable
 
 ANSWER_S = 10.0
 """Longest wait for a server: a program may have stopped it. Then it is continued once, and given up after that."""
@@ -25,26 +25,6 @@ END_S = 5.0
 """Time for a server to end when its socket is closed; then it is killed."""
 _NUMBER_BYTES = 8
 _LENGTH_BYTES = 4
-
-
-class ChildProcess(Protocol):
-    """The attributes and methods of a run's process that the host uses; `subprocess.Popen` has them, too."""
-
-    pid: int
-    returncode: int | None
-
-    def poll(self) -> int | None:
-        """Return the child's exit status, negative for a signal; None while it runs."""
-
-    def wait(self, timeout: float | None = None) -> int:
-        """Block until the child has ended; return its exit status.
-
-        Raises:
-            subprocess.TimeoutExpired: it is still running after `timeout` seconds.
-        """
-
-    def send_signal(self, number: int, /) -> None:
-        """Send a signal to the child, unless it has ended."""
 
 
 class ForkedChild:
@@ -117,6 +97,10 @@ def _continue_parent(pid: int) -> None:
             state, parent = file.read().rpartition(b")")[2].split()[:2]
         if state == b"Z":
             os.kill(int(parent), signal.SIGCONT)
+
+
+ChildProcess: TypeAlias = "subprocess.Popen[bytes] | ForkedChild | IsolatedChild"
+"""A run's process, however it was started."""
 
 
 class ForkClient:
