@@ -19,7 +19,7 @@ from tuisim.base.errors import ConfigError
 from tuisim.batch.plan import Plan
 from tuisim.batch.table import Row, list_usual_columns
 from tuisim.engine.protocol import End
-from tuisim.engine.runs.frames import LINE, build_telemetry_columns
+from tuisim.engine.runs.frames import build_telemetry_columns
 from tuisim.engine.runs.store import load_run
 from tuisim.engine.runs.temporary import create_temporary_home
 from tuisim.tasks.task import Result
@@ -77,8 +77,8 @@ class Measures:
             usual += names
         for subject in plan.subjects:
             spec = plan.build_spec(subject, {})
-            names = read_columns([name for name in self._columns if name != LINE], spec)
-            lines = (LINE,) if LINE in self._columns else ()
+            names = read_columns([name for name in self._columns if name != "line"], spec)
+            lines = ("line",) if "line" in self._columns else ()
             # The time is left out here, since telemetry always has it.
             self._columns = (*(name for name in names if name != TIME), *lines)
 

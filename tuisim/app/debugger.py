@@ -21,7 +21,7 @@ from tuisim.base.source import find_code_line, source_lines
 from tuisim.engine import protocol
 from tuisim.engine.breakpoints import Breakpoint
 from tuisim.engine.core.profile import compute_due_ns
-from tuisim.engine.protocol import UNKNOWN_ORDINAL, Inspected, Message, Paused, PauseReason
+from tuisim.engine.protocol import Inspected, Message, Paused, PauseReason
 from tuisim.engine.runs.replay_debugger import Position, ReplayDebugger
 
 if TYPE_CHECKING:
@@ -473,7 +473,7 @@ class DebugController:
         gone.
         """
         now = self._paused
-        if now is None or now.ordinal == UNKNOWN_ORDINAL:
+        if now is None or not now.is_counted:
             return at.tick <= (self._run_controller.timeline.newest if now is None else now.tick)
         return at.precedes(Position(now.tick, now.ordinal))
 
@@ -517,7 +517,7 @@ class DebugController:
             return self.position
         if timeline.at is not None:
             return Position(timeline.at)
-        if self._paused is not None and self._paused.ordinal != UNKNOWN_ORDINAL:
+        if self._paused is not None and self._paused.is_counted:
             return Position(self._paused.tick, self._paused.ordinal)
         return Position(timeline.newest) if timeline.recording and timeline.newest >= 0 else None
 

@@ -12,7 +12,7 @@ from typing import Any, assert_never
 from tuisim.base.errors import SIGNALLED, counted
 from tuisim.commands.echo import echo_error, echo_error_lines, echo_json
 from tuisim.engine.core.geometry import Pose
-from tuisim.engine.protocol import NO_ANSWER, End, describe_state
+from tuisim.engine.protocol import End, describe_state
 from tuisim.engine.runs.contacts import (
     LEFT_FIELD,
     Push,
@@ -137,7 +137,7 @@ def report(run: StoredRun, exit_code: int, *, as_json: bool) -> None:
     facts = describe(run)
     if facts["error"] and not has_shown_error(run):
         echo_error_lines(facts["error"].rstrip("\n"))
-    if facts["error"].rstrip("\n").endswith(NO_ANSWER):
+    if run.end is not None and run.end.lacks_answer:
         echo_error(
             "give each answer to input() with --input TEXT or in a line of a pipe, or use the app."
         )

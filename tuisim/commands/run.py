@@ -24,7 +24,7 @@ from tuisim.commands.notebooks import NotRun, find_listed, print_list, print_res
 from tuisim.commands.relay import Follower, RelayInterrupts, is_piped, read_answer
 from tuisim.commands.resolve import Prepared, check_arguments, prepare_runs
 from tuisim.commands.run_options import build_input_option, build_timeout_option
-from tuisim.engine.breakpoints import parse_breakpoints, parse_watch
+from tuisim.engine.breakpoints import Breakpoint, parse_watch
 from tuisim.engine.core.profile import NS_PER_S
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec
 from tuisim.engine.protocol import Answer, InputWanted, Inspect, Inspected, Message, Paused, Resume
@@ -215,8 +215,9 @@ def check_breaks(
             or there are watches without breakpoints.
     """
     for candidate in prepared:
-        for entry in parse_breakpoints(texts, candidate.spec):
-            entry.check_line(source_lines(candidate.program.text if candidate.program else ""))
+        lines = source_lines(candidate.program.text if candidate.program else "")
+        for text in texts:
+            Breakpoint.parse(text, candidate.spec).check_line(lines)
     for watch in watches:
         parse_watch(watch)
     if watches and not texts:

@@ -415,6 +415,11 @@ class Paused(Message):
     file: str = ""
     """File of the line, if it is a module and not the program itself."""
 
+    @property
+    def is_counted(self) -> bool:
+        """Whether all lines since the tick were counted, so that the exact instant is known."""
+        return self.ordinal != UNKNOWN_ORDINAL
+
 
 @dataclass(frozen=True, slots=True)
 class Resumed(Message):
@@ -509,6 +514,11 @@ class Ended(Message):
     error_line: int = 0
     """The last line of the program in the traceback; 0 if there is none."""
     deterministic: bool = True
+
+    @property
+    def lacks_answer(self) -> bool:
+        """Whether a call of `input()` without an answer has ended the program."""
+        return self.error.rstrip("\n").endswith(NO_ANSWER)
 
 
 @dataclass(frozen=True, slots=True)
