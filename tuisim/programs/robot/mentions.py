@@ -13,7 +13,7 @@ from tuisim.programs.robot.calls import Call, find_argument_node
 from tuisim.programs.robot.evaluation import Evaluation
 from tuisim.programs.robot.library import DeviceKind, PairClass
 from tuisim.programs.robot.reach import find_reachable, find_skipped
-from tuisim.programs.robot.scopes import FUNCTIONS, Function, Parameter, Scope, build_scope
+from tuisim.programs.robot.scopes import FUNCTIONS, Function, Scope, build_scope
 from tuisim.programs.robot.source import Module, find_hub, find_library
 from tuisim.programs.robot.values import (
     Instance,
@@ -341,42 +341,38 @@ class _Reader:
     # Devices
 
     def _find_devices(self, name: str, call: Call) -> Iterator[Mention]:
-        kind = library.DEVICES[name]
-        where = _find_where(call)
-        driver = self.evaluation.find_argument(call, "driver_name", None)
-        if driver:
-            kinds = [library.find_driver_kind(text) for text in self._flatten(driver)]
-            if not kinds or kinds[0] is None:
-                return
-            kind = kinds[0]
-        elif kind is DeviceKind.SENSOR:
-            kind = self._find_kind(call) or kind
+        kind = self._find_kind(name, call)
+        if kind is None:
+            return
+        word = next(
+            (one.arg for one in call.node.keywords if one.arg in library.PORT_NAMES),
+            library.PORT_NAMES[0],
+        )
+        node = find_argument_node(call, word, 0)
         names = self._find_names(call)
         device = Mention(
             kind,
             "",
-            where,
+            _find_where(call),
             names,
             call.scope.owner,
             call=call.node,
             via=self.via.node if self.via else None,
         )
-        word = next(
-            (one.arg for one in call.node.keywords if one.arg in library.PORT_NAMES),
-            library.PORT_NAMES[0],
-        )
-        ports = (
-            [("", names)]
-            if name in library.WITHOUT_PORT
-            else list(self._find_ports(call, word, 0, names))
-        )
-        if not ports and not any(isinstance(value, str) for value in self._read_given(call, word)):
+        if name in library.WITHOUT_PORT:
+            yield replace(device, is_any=True)
+            return
+        values = self.evaluation.find_argument(call, word, 0) or ()
+        ports = self._find_ports(call, word, 0)
+        if not ports and not any(isinstance(value, str) for value in values):
             # A text other than a port names a device that is not simulated, so only calls without texts are kept.
-            yield replace(device, is_any=self._has_any(call, word))
-        for port, called in dict(ports).items():
-            if port and not self.hub and port.startswith("out") != kind.is_motor:
+            is_any = node is None or (isinstance(node, ast.Constant) and node.value is None)
+            yield replace(device, is_any=is_any)
+        for port in ports:
+            if not self.hub and port.startswith("out") != kind.is_motor:
                 continue
-            placed = replace(device, port=port, names=called, is_any=not port)
+            called = (*names, *(library.list_names(node) if node is not None else ()))
+            placed = replace(device, port=port, names=called)
             yield self._mount(placed, call) if kind.is_motor else placed
 
     def _mount(self, motor: Mention, call: Call) -> Mention:
@@ -407,54 +403,16 @@ class _Reader:
         outside = self.hints.get(self.via.node, ()) if self.via else ()
         return tuple(dict.fromkeys((*self.hints.get(call.node, ()), *outside)))
 
-    def _read_given(self, call: Call, word: str) -> Sequence[Value]:
-        return self.evaluation.find_argument(call, word, 0) or ()
-
-    def _has_any(self, call: Call, word: str) -> bool:
-        node = find_argument_node(call, word, 0)
-        return node is None or (isinstance(node, ast.Constant) and node.value is None)
-
-    def _find_ports(
-        self, call: Call, name: str, position: int, names: tuple[str, ...]
-    ) -> Iterator[tuple[str, tuple[str, ...]]]:
-        """Yield the ports that an argument of a call may name, each with the program's names for the device there.
+    def _find_ports(self, call: Call, name: str, position: int) -> list[str]:
+        """Return the ports that an argument of a call may name, the likeliest first.
 
         Args:
             call: The call that creates the device.
             name: The name of the parameter.
             position: The index of the parameter.
-            names: The names for the object that the call creates.
         """
-        node = find_argument_node(call, name, position)
-        if node is None:
-            values: Iterable[Value] = self.evaluation.find_argument(call, name, position) or ()
-            yield from ((port, names) for value in values if (port := library.parse_port(value)))
-            return
-        own = library.list_names(node)
-        parameters = (
-            [bound for bound in call.scope.names.get(node.id, ()) if isinstance(bound, Parameter)]
-            if isinstance(node, ast.Name)
-            else []
-        )
-        if parameters:
-            for value, via in self.evaluation.arguments(parameters[0]):
-                if port := library.parse_port(value):
-                    further = self._find_said(via, parameters[0]) if via else ()
-                    yield port, (*names, *own, *further)
-            return
-        for value in self.evaluation.values(node, call.scope):
-            if port := library.parse_port(value):
-                yield port, (*names, *own)
-
-    def _find_said(self, call: Call, parameter: Parameter) -> tuple[str, ...]:
-        names = [argument.arg for argument in parameter.function.args.args]
-        name = parameter.argument.arg
-        position = names.index(name) - (1 if call.is_bound else 0) if name in names else None
-        node = find_argument_node(call, name, position)
-        return (
-            *self.hints.get(call.node, ()),
-            *(library.list_names(node) if node is not None else ()),
-        )
+        values = self.evaluation.find_argument(call, name, position) or ()
+        return list(dict.fromkeys(filter(None, map(library.parse_port, values))))
 
     def _flatten(self, values: Sequence[Value]) -> Iterator[Value]:
         for value in values:
@@ -464,7 +422,14 @@ class _Reader:
             else:
                 yield value
 
-    def _find_kind(self, call: Call) -> DeviceKind | None:
+    def _find_kind(self, name: str, call: Call) -> DeviceKind | None:
+        """Return the kind of a device that a call creates; None if the driver that it names is not simulated."""
+        if driver := self.evaluation.find_argument(call, "driver_name", None):
+            return library.find_driver_kind(next(self._flatten(driver), None))
+        kind = library.DEVICES[name]
+        return self._find_mode_kind(call) or kind if kind is DeviceKind.SENSOR else kind
+
+    def _find_mode_kind(self, call: Call) -> DeviceKind | None:
         """Return the kind of a sensor from the mode that the program sets; None if it sets no mode."""
         names = self.hints.get(call.node, ())
         for scope in self.scopes:
@@ -522,7 +487,7 @@ class _Reader:
         polarities = [
             str(value) for value in self.evaluation.find_argument(call, library.POLARITY, 2) or ()
         ]
-        for left, other in self._find_ends(known, call, names, devices):
+        for left, other in self._find_ends(known, call, devices):
             if left != other and left.startswith("out") and other.startswith("out"):
                 yield Pair(
                     left,
@@ -539,14 +504,13 @@ class _Reader:
                 )
 
     def _find_ends(
-        self, known: PairClass, call: Call, names: tuple[str, ...], devices: Sequence[Mention]
+        self, known: PairClass, call: Call, devices: Sequence[Mention]
     ) -> Iterable[tuple[str, str]]:
         """Return a tuple of the left and the right motor's port for each pair that a call can create.
 
         Args:
             known: The library class of the pair.
             call: The call.
-            names: The program's names for the pair.
             devices: The devices that the program creates.
         """
         if known.takes_motors:
@@ -561,8 +525,8 @@ class _Reader:
         else:
             # `GyroBalancer` alone has usual ports; its motor ports are the arguments 10 and 11, counted from 0.
             places = (10, 11) if known.usual[0] else (0, 1)
-            left = [port for port, _ in self._find_ports(call, known.left, places[0], names)]
-            right = [port for port, _ in self._find_ports(call, known.right, places[1], names)]
+            left = self._find_ports(call, known.left, places[0])
+            right = self._find_ports(call, known.right, places[1])
         left = left or ([known.usual[0]] if known.usual[0] else [])
         right = right or ([known.usual[1]] if known.usual[1] else [])
         if len(left) != len(right):
