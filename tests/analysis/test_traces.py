@@ -8,13 +8,13 @@ import pytest
 from tests.app.analyser.logs import long_log
 from tuisim.analysis.traces import LogTraces, align_series
 from tuisim.base.errors import LogError
-from tuisim.logs.columns import guess_columns
+from tuisim.logs.columns import choose_columns
 from tuisim.logs.log import Log
 
 
 def log_of(**columns: list[float]) -> Log:
     table = pa.table({"time": [0.0, 1.0], **columns})
-    return Log("test", table, guess_columns(table))
+    return Log("test", table, choose_columns(table))
 
 
 def test_only_the_red_light_of_telemetry_is_ticked_at_first() -> None:
@@ -56,7 +56,7 @@ def test_a_traces_value_holds_until_the_next_sample() -> None:
 @pytest.mark.parametrize("times, span", [([3.0, 3.0], (2.5, 3.5)), ([1.0, 4.0], (1.0, 4.0))])
 def test_a_single_instant_has_room_around_it(times: list[float], span: tuple[float, float]) -> None:
     table = pa.table({"time": times, "light": [1.0, 2.0]})
-    assert LogTraces(Log("test", table, guess_columns(table))).find_span_s() == span
+    assert LogTraces(Log("test", table, choose_columns(table))).find_span_s() == span
 
 
 def test_a_trace_that_is_not_shown_has_no_span() -> None:

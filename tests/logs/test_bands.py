@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from tests.cases import cases
 from tuisim.logs.bands import build_band_report
-from tuisim.logs.columns import guess_columns
+from tuisim.logs.columns import choose_columns
 from tuisim.logs.log import Log
 from tuisim.logs.plateaus import find_plateaus
 from tuisim.logs.signals import compute_summary
@@ -214,5 +214,5 @@ def test_plateaus_found_in_drawn_logs_have_the_recorded_sums(
 def test_only_variables_that_may_be_light_get_names_of_greys(name: str, grey: str) -> None:
     values = np.repeat([0.0, 100.0], 50)
     table = pa.table({"time": np.arange(100) / 10, name: values})
-    report = build_band_report(Log("test", table, guess_columns(table)), name)
+    report = build_band_report(Log("test", table, choose_columns(table)), name)
     assert report.bands[-1].grey == grey

@@ -17,7 +17,7 @@ from tuisim.logs.bands import (
     BandReport,
     build_band_report,
 )
-from tuisim.logs.columns import guess_columns
+from tuisim.logs.columns import choose_columns
 from tuisim.logs.levels import (
     _has_light_levels,
     find_light,
@@ -81,7 +81,7 @@ def test_bands_have_the_places_and_widths_that_the_robot_drove_over() -> None:
             "y_mm": np.zeros(21),
         }
     )
-    report = build_band_report(Log("log", table, guess_columns(table)), "Light")
+    report = build_band_report(Log("log", table, choose_columns(table)), "Light")
     middle = report.bands[1]
     assert [(band.level, band.grey) for band in report.bands] == [
         (100, "white"),
@@ -101,7 +101,7 @@ def test_a_band_between_others_without_a_width_says_why() -> None:
     columns = {"Light": light, "x_mm": np.arange(20) * 10.0, "y_mm": np.zeros(20)}
     table = pa.table({"time": np.arange(20) / 10, **columns})
 
-    report = build_band_report(Log("log", table, guess_columns(table)), "Light")
+    report = build_band_report(Log("log", table, choose_columns(table)), "Light")
 
     assert [band.describe_width() for band in report.bands] == [CUT_OFF, NO_EDGE, CUT_OFF]
     assert report.describe().endswith("; no edge: other samples lie between this band and the next")
@@ -120,7 +120,7 @@ def test_levels_measured_by_a_brick_get_the_right_names_of_greys() -> None:
 
 def test_empty_cells_of_a_log_belong_to_no_band() -> None:
     table = pa.table({"time": np.arange(12.0), "light": [50.0, None] * 3 + [100.0, None] * 3})
-    report = build_band_report(Log("log", table, guess_columns(table)), "light")
+    report = build_band_report(Log("log", table, choose_columns(table)), "light")
     assert [(band.level, band.samples) for band in report.bands] == [(50, 3), (100, 3)]
     assert (report.transitions, report.total) == (0, 6)
 
@@ -141,7 +141,7 @@ def test_a_single_sample_at_an_end_of_a_log_counts_as_a_level(
     light: list[float], levels: list[tuple[float, int]]
 ) -> None:
     table = pa.table({"time": np.arange(len(light)) / 10, "Light": light})
-    report = build_band_report(Log("log", table, guess_columns(table)), "Light")
+    report = build_band_report(Log("log", table, choose_columns(table)), "Light")
     assert [(band.level, band.samples) for band in report.bands] == levels
     words = report.describe()
     assert ("0.00 black (one sample)" in words) is any(samples == 1 for _, samples in levels)

@@ -17,7 +17,7 @@ from tuisim.base.errors import LogError
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import RobotSpec
 from tuisim.engine.runs.frames import compute_dead_reckoning
-from tuisim.logs.columns import guess_columns
+from tuisim.logs.columns import choose_columns
 from tuisim.logs.derived import (
     NEEDED,
     build_reckoned_series,
@@ -68,7 +68,7 @@ def test_dead_reckoning_from_text_columns_is_refused() -> None:
         {"time": [0.0, 1.0], "value": [1.0, 2.0], **{name: ["a", "b"] for name in NEEDED}}
     )
     with pytest.raises(LogError, match="no column 'left_position_deg' with numbers"):
-        build_reckoned_series(Log("test", table, guess_columns(table)))
+        build_reckoned_series(Log("test", table, choose_columns(table)))
 
 
 @cases("text, said", REFUSED)

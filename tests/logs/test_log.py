@@ -10,14 +10,14 @@ import pyarrow.parquet as pq
 
 from tests.cases import cases
 from tuisim.logs.choices import ReadChoices
-from tuisim.logs.columns import guess_columns
+from tuisim.logs.columns import choose_columns
 from tuisim.logs.log import Log
 from tuisim.logs.reader import open_log
 
 
 def log_of(**columns: object) -> Log:
     table = pa.table(columns)
-    return Log("test", table, guess_columns(table))
+    return Log("test", table, choose_columns(table))
 
 
 SMALL = (

@@ -7,13 +7,15 @@ from dataclasses import fields
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError, among
-from tuisim.logs.units import SECONDS
 
 SIGNS = {"comma": ",", "semicolon": ";", "tab": "\t", "bar": "|", "blank": " "}
 """Separators by name; a blank is any number of blanks."""
 NAMES_OF_SIGNS = {sign: name for name, sign in SIGNS.items()}
-DECIMAL_SIGNS = (".", ",")
-WORDS = {"unit": tuple(SECONDS), "separator": tuple(SIGNS), "decimal": DECIMAL_SIGNS}
+WORDS = {
+    "unit": ("s", "ms", "us", "ns", "min"),
+    "separator": tuple(SIGNS),
+    "decimal": (".", ","),
+}
 """What may be chosen, by name of the choice."""
 
 
@@ -28,7 +30,7 @@ class ReadChoices:
     time: str | None = None
     """Column with the time; empty to count the rows; None to find it."""
     unit: str = ""
-    """Unit of numeric times, one of `SECONDS`."""
+    """Unit of numeric times, one of `WORDS["unit"]`."""
     value: tuple[str, ...] = ()
     """Columns with values."""
     header: int = 0
@@ -40,7 +42,7 @@ class ReadChoices:
     separator: str = ""
     """The separator of the cells of a text, one of `SIGNS`."""
     decimal: str = ""
-    """One of `DECIMAL_SIGNS`."""
+    """The decimal sign, one of `WORDS["decimal"]`."""
 
     def __post_init__(self) -> None:
         for name, allowed in WORDS.items():

@@ -16,7 +16,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError, among
 from tuisim.engine.runs.arrays import FloatArray, IntArray
 from tuisim.logs.arrow import PER_S, convert_to_floats
-from tuisim.logs.choices import ReadChoices
+from tuisim.logs.choices import NO_CHOICES, ReadChoices
 from tuisim.logs.dates import (
     CLOCK_OF_12_HOURS,
     SPAN,
@@ -25,7 +25,6 @@ from tuisim.logs.dates import (
     is_moment,
     normalize_dates,
 )
-from tuisim.logs.units import SECONDS
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -314,7 +313,7 @@ def _list_moments(table: pa.Table) -> list[str]:
     return [*typed, *find_texts(table, is_moment)]
 
 
-def guess_columns(table: pa.Table) -> Layout:
+def _guess_columns(table: pa.Table) -> Layout:
     """Return the roles of the columns as guessed from their names and types.
 
     The time is the first of these that the table has: the column whose name most certainly means a time; a column of
@@ -340,7 +339,7 @@ def guess_columns(table: pa.Table) -> Layout:
         values = [n for n in numeric if n not in hidden] or numeric
         # With a single numeric column, there is no other choice, so the guess is sure.
         sure = bool(named) or (len(numeric) < 2 and not time)
-    return _set_time_unit(Layout(time, 1.0, False, variable, tuple(values), run, sure), table)
+    return Layout(time, 1.0, False, variable, tuple(values), run, sure)
 
 
 def _find_named(table: pa.Table, names: Sequence[str], fits: Callable[[pa.DataType], bool]) -> str:
@@ -357,24 +356,6 @@ def _find_named(table: pa.Table, names: Sequence[str], fits: Callable[[pa.DataTy
         field.name.strip(" _").lower(): field.name for field in table.schema if fits(field.type)
     }
     return next((columns[name] for name in names if name in columns), "")
-
-
-def _set_time_unit(layout: Layout, table: pa.Table, unit_s: float | None = None) -> Layout:
-    """Return a copy of a layout in which the unit of its time column is set.
-
-    Args:
-        layout: The layout.
-        table: The table.
-        unit_s: The unit in seconds; None to guess it from the name and the size of the numbers.
-    """
-    date_unit_s = None
-    if not layout.time or not is_numeric(table.field(layout.time).type):
-        unit_s = 1.0
-    else:
-        if unit_s is None:
-            unit_s = parse_time_name(layout.time).unit_s
-        date_unit_s = find_epoch_unit_s(table.column(layout.time), unit_s)
-    return replace(layout, unit_s=date_unit_s or unit_s or 1.0, since_first=date_unit_s is not None)
 
 
 def _find_named_time(table: pa.Table) -> str:
@@ -471,13 +452,13 @@ def _is_rising(table: pa.Table, name: str) -> bool:
     return bool((numbers[1:] > numbers[:-1]).all())
 
 
-def choose_columns(table: pa.Table, choices: ReadChoices) -> Layout:
+def choose_columns(table: pa.Table, choices: ReadChoices = NO_CHOICES) -> Layout:
     """Return the roles of a table's columns: the user's choices, and guesses for all others.
 
     Raises:
         LogError: the table has no such column, or it is not numeric.
     """
-    layout = guess_columns(table)
+    layout = _guess_columns(table)
     time = choices.time
     values = choices.value
     if time is not None:
@@ -492,7 +473,11 @@ def choose_columns(table: pa.Table, choices: ReadChoices) -> Layout:
                 raise LogError(f"column {name!r} is not numeric")
         keep = layout.variable if len(values) == 1 else ""
         layout = replace(layout, variable=keep, values=values, sure=True)
-    return _set_time_unit(layout, table, SECONDS[choices.unit] if choices.unit else None)
+    if not layout.time or not is_numeric(table.field(layout.time).type):
+        return layout
+    unit_s = UNITS_S.get(choices.unit) or parse_time_name(layout.time).unit_s
+    date_unit_s = find_epoch_unit_s(table.column(layout.time), unit_s)
+    return replace(layout, unit_s=date_unit_s or unit_s or 1.0, since_first=date_unit_s is not None)
 
 
 def _require(table: pa.Table, name: str) -> None:

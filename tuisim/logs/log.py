@@ -135,8 +135,8 @@ class LogCache:
     series: dict[str, Series] = field(default_factory=dict)
     numbers: dict[str, FloatArray] = field(default_factory=dict)
     times_s: FloatArray | None = None
-    whole: tuple[IntArray, FloatArray] | None = None
-    """Rows and times of a series to which all rows belong."""
+    rows: IntArray | None = None
+    """The rows of a series to which all rows belong."""
     specs: dict[int, RunSpec | None] = field(default_factory=dict)
     """By index of the run; complete from the start if the log was built from stored runs."""
 
@@ -215,12 +215,12 @@ class Log:
         layout = self.layout
         rows = member.rows
         values = self.numbers(layout.values[0] if layout.variable else member.variable)
-        if rows is not None:
-            return Series(member.name, self._read_times(rows), values[rows], rows, member.run)
-        cache = self._cache
-        if cache.whole is None:
-            cache.whole = np.arange(self.rows), self._read_times(None)
-        return Series(member.name, cache.whole[1], values, cache.whole[0], member.run)
+        if rows is None:
+            if self._cache.rows is None:
+                self._cache.rows = np.arange(self.rows)
+            return Series(member.name, self.times_s, values, self._cache.rows, member.run)
+        times_s = np.arange(float(len(rows))) if layout.time == ROW else self.times_s[rows]
+        return Series(member.name, times_s, values[rows], rows, member.run)
 
     @property
     def numeric_columns(self) -> list[str]:
@@ -233,14 +233,12 @@ class Log:
 
         Without a time column, the times are row numbers from 0. The array must not be modified.
         """
-        return self._read_times(None)
-
-    def _read_times(self, rows: IntArray | None) -> FloatArray:
-        if self.layout.time == ROW:
-            return np.arange(self.rows if rows is None else len(rows), dtype=np.float64)
         if self._cache.times_s is None:
-            self._cache.times_s = read_times(self.table, self.layout).seconds
-        return self._cache.times_s if rows is None else self._cache.times_s[rows]
+            if self.layout.time == ROW:
+                self._cache.times_s = np.arange(float(self.rows))
+            else:
+                self._cache.times_s = read_times(self.table, self.layout).seconds
+        return self._cache.times_s
 
     def numbers(self, column: str) -> FloatArray:
         """Return a numeric column as floats, shape (n,), NaN for empty cells. Callers must not modify the array."""

@@ -40,7 +40,6 @@ from tuisim.logs.columns import (
     choose_columns,
     describe_guessed_times,
     find_unread_time,
-    guess_columns,
     is_text,
 )
 from tuisim.logs.export import find_companion, log_metadata
@@ -397,7 +396,7 @@ def _build_log_from_columns(
     return Log(
         title,
         table,
-        guess_columns(table),
+        choose_columns(table),
         tuple(notes),
         metadata=log_metadata(kind, columns, runs),
         _cache=LogCache(specs={index: run.spec for index, run in enumerate(runs)}),

@@ -40,10 +40,6 @@ UNITS = {
 
 _NONE = Unit("", "")
 
-SECONDS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0}
-"""Units of a time column, in seconds."""
-
-
 MAX_LEVEL = 255.0
 """Maximum of a light reading, in percent or on the scale 0 to 255."""
 

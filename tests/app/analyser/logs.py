@@ -7,7 +7,7 @@ import pyarrow as pa
 
 from tuisim.analysis.model import AnalysisModel
 from tuisim.analysis.source import LogRequest, OpenedLog
-from tuisim.logs.columns import guess_columns
+from tuisim.logs.columns import choose_columns
 from tuisim.logs.log import Log
 
 
@@ -28,14 +28,14 @@ def long_log(runs: int = 1) -> Log:
                 for column, cell in zip(rows.values(), row, strict=True):
                     column.append(cell)
     table = pa.table(rows)
-    return Log("test", table, guess_columns(table))
+    return Log("test", table, choose_columns(table))
 
 
 def wide_log(rows: int) -> Log:
     """One variable of many samples, a thousand a second."""
     time_s = np.arange(rows) / 1000.0
     table = pa.table({"time": time_s, "wave": np.sin(time_s) + (np.arange(rows) % 1013 == 0)})
-    return Log("test", table, guess_columns(table))
+    return Log("test", table, choose_columns(table))
 
 
 def model_of(log: Log) -> AnalysisModel:

@@ -13,7 +13,7 @@ from tuisim.analysis.source import LogRequest, OpenedLog
 from tuisim.app.analyser.panes import pane_lines
 from tuisim.app.analyser.table_pane import build_heading, count_rows
 from tuisim.engine.runs.run_folder import StoredRun
-from tuisim.logs.columns import guess_columns
+from tuisim.logs.columns import choose_columns
 from tuisim.logs.log import Log
 from tuisim.logs.reader import build_log
 
@@ -27,7 +27,7 @@ def stepped(rows: int, band_samples: int) -> pa.Table:
 
 def test_of_many_bands_those_around_the_chosen_one_are_shown() -> None:
     table = stepped(12_000, 8)
-    model = model_of(Log("test", table, guess_columns(table)))
+    model = model_of(Log("test", table, choose_columns(table)))
     model.find_bands(model.list_unsearched())
     assert len(model.bands()) == 1500
     shown = ["".join(part for part, _ in line) for line in pane_lines("bands", model, 1250, 80, 20)]
@@ -44,7 +44,7 @@ def test_few_bands_are_all_in_sight_with_their_statistics_in_a_small_terminal() 
             "y_mm": np.zeros(80),
         }
     )
-    model = model_of(Log("test", table, guess_columns(table)))
+    model = model_of(Log("test", table, choose_columns(table)))
     for trace in model.traces:
         trace.on = trace.name == "Colour"
     model.find_bands(model.list_unsearched())
@@ -60,7 +60,7 @@ def test_with_two_traces_a_narrow_pane_of_bands_has_their_levels_names_and_width
     table = stepped(80, 10).append_column("x_mm", pa.array(np.arange(80.0)))
     table = table.append_column("y_mm", pa.array(np.zeros(80)))
     table = table.append_column("Right", table.column("Colour"))
-    model = model_of(Log("test", table, guess_columns(table)))
+    model = model_of(Log("test", table, choose_columns(table)))
     for trace in model.traces:
         trace.on = trace.name in ("Colour", "Right")
     model.find_bands(model.list_unsearched())
@@ -84,7 +84,7 @@ def test_figures_that_do_not_fit_beside_the_others_are_below_them(
     size: tuple[int, int], heads: list[str]
 ) -> None:
     table = stepped(80, 10)
-    model = model_of(Log("test", table, guess_columns(table)))
+    model = model_of(Log("test", table, choose_columns(table)))
     lines = text_of(model, "statistics", *size).splitlines()
     assert [" ".join(line.split()) for line in lines if "mean" in line or "95 %" in line] == heads
     assert len(lines) == 2 * len(heads)
@@ -93,7 +93,7 @@ def test_figures_that_do_not_fit_beside_the_others_are_below_them(
 @pytest.mark.parametrize("bands, rows", [(8, 8), (9, 8), (20, 8)])
 def test_a_summary_that_does_not_fit_leaves_its_line_to_the_rows(bands: int, rows: int) -> None:
     table = stepped(10 * bands, 10)
-    model = model_of(Log("test", table, guess_columns(table)))
+    model = model_of(Log("test", table, choose_columns(table)))
     model.find_bands(model.list_unsearched())
     _, *shown = text_of(model, "bands", 48, 9).splitlines()
     assert [line.split()[0] for line in shown] == [str(number) for number in range(1, rows + 1)]
@@ -107,7 +107,7 @@ def text_of(model: AnalysisModel, pane: str = "table", width: int = 100, height:
 @for_each(width=range(1, 12))
 def test_a_pane_narrower_than_its_first_column_is_not_blank(width: int) -> None:
     table = stepped(80, 10)
-    model = model_of(Log("test", table, guess_columns(table)))
+    model = model_of(Log("test", table, choose_columns(table)))
     model.find_bands(model.list_unsearched())
     for pane in ("bands", "statistics"):
         assert text_of(model, pane, width, 9)
@@ -117,7 +117,7 @@ def test_a_row_whose_variable_name_is_empty_is_still_shown() -> None:
     table = pa.table(
         {"variable": ["A", None, "A"], "value": [1.0, 2.0, 3.0], "time": [0.0, 1.0, 2.0]}
     )
-    model = model_of(Log("test", table, guess_columns(table)))
+    model = model_of(Log("test", table, choose_columns(table)))
     model.go_to_row(1)
     assert (model.trace_of_row(1).name, model.cursor_s) == ("A", 2.0)
     assert "2" in text_of(model)
@@ -151,7 +151,7 @@ def test_every_pane_fits_its_size(pane: str, words: str, size: tuple[int, int]) 
 
 def test_decimal_points_of_a_column_stand_below_each_other() -> None:
     table = pa.table({"time": [0.08, 0.1, 0.125], "Colour": [100, 86, 50]})
-    lines = text_of(model_of(Log("test", table, guess_columns(table)))).splitlines()[1:4]
+    lines = text_of(model_of(Log("test", table, choose_columns(table)))).splitlines()[1:4]
     assert len({line.index(".") for line in lines}) == 1
     assert (
         len(
@@ -185,7 +185,7 @@ def test_the_border_says_what_the_column_index_counts(run: StoredRun) -> None:
 @for_each(height=range(6, 12))
 def test_a_sentence_below_the_rows_is_not_cut_within_its_only_line(height: int) -> None:
     table = stepped(60, 20)
-    model = model_of(Log("test", table, guess_columns(table)))
+    model = model_of(Log("test", table, choose_columns(table)))
     model.find_bands(model.list_unsearched())
     lines = text_of(model, "bands", 48, height).splitlines()
     assert not lines[-1].endswith("…") or lines[-2].startswith("Colour:")

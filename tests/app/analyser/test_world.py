@@ -16,7 +16,7 @@ from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.engine.core.tree import dump_run
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
-from tuisim.logs.columns import guess_columns
+from tuisim.logs.columns import choose_columns
 from tuisim.logs.log import Log
 
 SPEC = RunSpec(RobotSpec(), WorldSpec(start=Pose(300, 500, 0)), ROBOLAB)
@@ -31,7 +31,7 @@ def opened(metadata: dict[str, object], **columns: list[float | None]) -> Opened
     """A file with metadata."""
     table = pa.table({"time": [0.0, 1.0], "light": [1.0, 2.0], **columns})
     return OpenedLog(
-        LogRequest(file="a.csv"), Log("a.csv", table, guess_columns(table), metadata=metadata)
+        LogRequest(file="a.csv"), Log("a.csv", table, choose_columns(table), metadata=metadata)
     )
 
 
@@ -72,7 +72,7 @@ def test_the_world_beside_a_log_file_has_the_pose_of_the_selected_row(home: Path
 def test_the_world_beside_a_stored_run_can_show_any_instant_between_samples(run: StoredRun) -> None:
     table = pa.table({"time": [0.0], "light": [1.0]})
     log = OpenedLog(
-        LogRequest(runs=(run.id,)), Log("run", table, guess_columns(table)), runs=(run,)
+        LogRequest(runs=(run.id,)), Log("run", table, choose_columns(table)), runs=(run,)
     )
     world = load_world(log, 0)
     assert world is not None and has_poses(log)

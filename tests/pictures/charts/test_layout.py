@@ -16,7 +16,7 @@ from tests.app.analyser.logs import long_log, model_of
 from tests.cases import cases, for_each
 from tuisim.analysis.chart import View, build_chart
 from tuisim.analysis.model import AnalysisModel
-from tuisim.logs.columns import guess_columns
+from tuisim.logs.columns import choose_columns
 from tuisim.logs.log import Log
 from tuisim.pictures.charts import axes
 from tuisim.pictures.charts.files import draw_image, draw_svg
@@ -66,7 +66,7 @@ VIEWS = {
 
 def log_of(columns: dict[str, object]) -> AnalysisModel:
     table = pa.table(columns)
-    return model_of(Log("title\x1b]0;\n<title>", table, guess_columns(table)))
+    return model_of(Log("title\x1b]0;\n<title>", table, choose_columns(table)))
 
 
 @pytest.mark.quick_cases("two scales-*", "no number-*")
