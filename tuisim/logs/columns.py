@@ -169,18 +169,15 @@ def read_times(table: pa.Table, layout: Layout) -> Times:
     if is_text(kind):
         return parse_times(column)
     if pa.types.is_date(kind):
-        kind = pa.timestamp("s")
-        column = column.cast(kind)
-    if pa.types.is_time32(kind):
+        column = column.cast(pa.timestamp("s"))
+    elif pa.types.is_time32(kind):
         # Arrow casts 32-bit times only to integers of the same size.
-        column = column.cast(pa.int32())
+        column = column.cast(pa.time64("us"))
+    kind = column.type
     is_temporal = pa.types.is_temporal(kind)
-    if is_temporal or pa.types.is_signed_integer(kind):
-        column = column.cast(pa.int64())
-    elif pa.types.is_integer(kind):
-        # Differences of unsigned numbers would wrap where time goes back; those from 2⁶³ on are no signed ones.
-        is_signed = (pc.max(column).as_py() or 0) < 2**63
-        column = column.cast(pa.int64() if is_signed else pa.float64(), safe=False)
+    if is_temporal or pa.types.is_integer(kind):
+        # Differences of unsigned numbers would wrap where time goes back.
+        column = column.cast(pa.int64(), safe=False)
     if layout.since_first or pa.types.is_timestamp(kind):
         # Integers are subtracted, as floats have too few digits for nanoseconds since 1970.
         column = pc.subtract(column, pc.first(column.filter(pc.is_finite(column))))

@@ -77,8 +77,9 @@ def _go_on(windows: FloatArray, shape: IntArray) -> BoolArray:
     count = blocks.shape[1]
     if before.shape[1] + after.shape[1] < _MIN_BESIDE or count < 2 * _MIN_BESIDE:
         return np.zeros(len(windows), bool)
-    level = _measure_misfit(inside, 0) / (inside.shape[1] - 1)
-    smooth = _measure_misfit(blocks, 2) / (count - 3)
+    level = inside.var(axis=1, ddof=1)
+    _, misfits, *_ = np.polyfit(np.linspace(-1.0, 1.0, count), blocks.T, 2, full=True)
+    smooth = misfits / (count - 3)
     walk = (np.diff(blocks, axis=1) ** 2).mean(axis=1)
     goes_on: BoolArray = np.minimum(smooth, walk) < _BETTER * level
     return goes_on
@@ -89,18 +90,6 @@ def _compute_block_means(part: FloatArray, size: int) -> FloatArray:
     count = part.shape[1] // size
     means: FloatArray = part[:, : count * size].reshape(len(part), count, size).mean(axis=2)
     return means
-
-
-def _measure_misfit(part: FloatArray, degree: int) -> FloatArray:
-    """Return for each row of samples the sum of squares that a polynomial of the degree leaves, shape (m,)."""
-    count = part.shape[1]
-    if count <= degree + 1:
-        return np.zeros(len(part))
-    base, _ = np.linalg.qr(np.vander(np.linspace(-1.0, 1.0, count), degree + 1))
-    centred = part - part.mean(axis=1, keepdims=True)
-    rest = centred - centred @ base @ base.T
-    misfit: FloatArray = (rest**2).sum(axis=1)
-    return misfit
 
 
 def _find_treads(signal: Signal, plateaus: PlateauArray) -> BoolArray:

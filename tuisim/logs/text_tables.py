@@ -30,7 +30,6 @@ from tuisim.logs.heading import (
     has_numbers,
     is_rule,
     parse_kinds,
-    split_cells,
     split_rows,
 )
 from tuisim.logs.units import TEXT, TIMEDELTA
@@ -184,14 +183,15 @@ class CsvReader:
         """Return the cells of the first line if it is the heading of a table whose rows follow; else an empty list."""
         if not _MAY_BE_NAMES.match(lines[0]):
             return []
-        names = [cell.strip() for cell in split_cells(lines[0], self._separator)]
-        kinds = parse_kinds(names)
-        if len(names) < 2 or set(kinds) != {"w"}:
+        rows = split_rows(list(enumerate(lines)), self._separator)
+        first = next(rows)
+        width = len(first.cells)
+        if width < 2 or set(first.kinds) != {"w"}:
             return []
-        below = [line for line in lines[1:] if line.strip()][:_MIN_ROWS]
-        rows = [parse_kinds(split_cells(line, self._separator)) for line in below]
-        are_rows = all(len(row) == len(names) and has_numbers(row) for row in rows)
-        return names if are_rows and len(rows) == _MIN_ROWS else []
+        below = list(islice(rows, _MIN_ROWS))
+        are_rows = all(len(row.cells) == width and has_numbers(row.kinds) for row in below)
+        is_heading = are_rows and len(below) == _MIN_ROWS
+        return [name.strip() for name in first.cells] if is_heading else []
 
     # Cells
 
