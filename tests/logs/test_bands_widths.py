@@ -8,7 +8,7 @@ import pytest
 
 from tests.cases import cases, for_each
 from tuisim.engine.runs.arrays import FloatArray
-from tuisim.logs.bands import compute_driven_mm, measure_widths
+from tuisim.logs.bands import measure_widths
 from tuisim.logs.columns import Layout
 from tuisim.logs.levels import Levels, Light, measure_levels
 from tuisim.logs.log import Log
@@ -37,7 +37,7 @@ def drawn_levels(places_mm: FloatArray, edges_mm: FloatArray, spot_mm: float) ->
 def test_the_distance_driven_is_summed_along_the_path() -> None:
     table = pa.table({"x_mm": [0.0, 3.0, 3.0], "y_mm": [0.0, 4.0, 6.0], "red": [1.0, 2.0, 3.0]})
     log = Log("a", table, Layout(values=("red",)))
-    driven_mm = compute_driven_mm(log, log.series("red"))
+    driven_mm = log.compute_driven_mm(log.series("red"))
     assert driven_mm is not None and driven_mm.tolist() == [0, 5, 7]
 
 

@@ -21,7 +21,6 @@ from tuisim.logs.columns import choose_columns
 from tuisim.logs.derived import (
     NEEDED,
     build_reckoned_series,
-    compute_derived,
     parse_definition,
 )
 from tuisim.logs.log import Log
@@ -84,10 +83,10 @@ def test_a_faulty_derived_variable_is_refused_and_leaves_the_log_unchanged(
 
 def test_a_derived_variable_is_computed_for_each_run_by_itself() -> None:
     log = long_log(runs=2)
-    first, second = compute_derived(log, parse_definition("slope(Colour)"), "Left #1")
+    first, second = parse_definition("slope(Colour)").compute(log, "Left #1")
     assert (first.name, second.name) == ("slope(Colour) #1", "slope(Colour) #2")
     assert (first.values[0], second.values[0]) == (-10.0, -5.0)
-    (apart,) = compute_derived(log, parse_definition("`Colour #1` - `Colour #2`"), "Left #1")
+    (apart,) = parse_definition("`Colour #1` - `Colour #2`").compute(log, "Left #1")
     assert apart.values.tolist() == [
         0.0,
         -10.0,

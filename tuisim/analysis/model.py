@@ -20,7 +20,6 @@ from tuisim.logs.bands import Band, BandReport, build_band_report
 from tuisim.logs.derived import (
     RECKONED_COLUMNS,
     build_reckoned_series,
-    compute_derived,
     find_named_columns,
     parse_definition,
 )
@@ -465,17 +464,13 @@ class AnalysisModel:
         text = text.strip()
         log = self.log
         if text == RECKONING:
-            for column in RECKONED_COLUMNS:
-                log = log.drop_derived(column)
             for series in build_reckoned_series(log):
                 log = log.add_derived(series.name, [series])
             return text, log
         definition = parse_definition(text)
         bare = log.drop_derived(definition.name)
         if definition.expression:
-            return text, bare.add_derived(
-                definition.name, compute_derived(bare, definition, self.selected)
-            )
+            return text, bare.add_derived(definition.name, definition.compute(bare, self.selected))
         if bare is log:
             names = dict.fromkeys(drop_run(name) for name in log.derived)
             raise LogError(

@@ -11,7 +11,6 @@ import numpy as np
 from tuisim.analysis.events import THRESHOLD_FORM, parse_threshold
 from tuisim.base.errors import LogError
 from tuisim.engine.runs.arrays import FloatArray
-from tuisim.logs.bands import compute_driven_mm
 from tuisim.logs.signals import sample_signal
 from tuisim.pictures.charts.axes import Limits, widen_times
 from tuisim.pictures.charts.traces import Pyramid, Trace, Traces, sample_and_hold
@@ -207,7 +206,7 @@ def align_series(log: Log, series: Sequence[Series], way: str) -> list[FloatArra
     if way == TIME:
         return [None] * len(series)
     if way == DISTANCE:
-        driven = [compute_driven_mm(log, variable) for variable in series]
+        driven = [log.compute_driven_mm(variable) for variable in series]
         if any(places is None for places in driven):
             raise LogError("no distances: the log has no x_mm and y_mm in each row", FORM)
         return driven

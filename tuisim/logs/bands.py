@@ -20,7 +20,7 @@ from tuisim.logs.levels import Levels, find_light, measure_levels
 from tuisim.logs.plateaus import Search, find_plateaus
 
 if TYPE_CHECKING:
-    from tuisim.logs.log import Log, Series
+    from tuisim.logs.log import Log
 
 NAN = float("nan")
 ONE_SAMPLE = "one sample"
@@ -180,7 +180,7 @@ def build_band_report(log: Log, name: str, search: Search = find_plateaus) -> Ba
     levels = measure_levels(name, values, light, search)
     finite = np.append(0, np.cumsum(np.isfinite(values)))
     first, last = levels.start, levels.stop - 1
-    driven_mm = compute_driven_mm(log, series)
+    driven_mm = log.compute_driven_mm(series)
     start_mm = stop_mm = width_mm = np.full(len(first), NAN)
     if driven_mm is not None:
         start_mm, stop_mm = driven_mm[first], driven_mm[last]
@@ -206,16 +206,6 @@ def build_band_report(log: Log, name: str, search: Search = find_plateaus) -> Ba
     cells = zip(*(column.tolist() for column in columns), strict=True)
     bands = tuple(Band(series.name, *row) for row in cells)
     return BandReport(name, bands, int(finite[-1]))
-
-
-def compute_driven_mm(log: Log, series: Series) -> FloatArray | None:
-    """Return the distance driven at each sample in mm, shape (n,); None if the log has no positions."""
-    if not {"x_mm", "y_mm"} <= set(log.numeric_columns) or not len(series.rows):
-        return None
-    x_mm, y_mm = (log.pick_numbers(name, series.rows) for name in ("x_mm", "y_mm"))
-    if not (np.isfinite(x_mm).all() and np.isfinite(y_mm).all()):
-        return None
-    return np.append(0.0, np.cumsum(np.hypot(np.diff(x_mm), np.diff(y_mm))))
 
 
 _MAX_EDGE_MM = 100.0

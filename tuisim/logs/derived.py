@@ -55,6 +55,38 @@ class Definition:
     period_s: float | None = None
     """Sampling period; None keeps the times of its source."""
 
+    def compute(self, log: Log, otherwise: str) -> list[Series]:
+        """Return the series of the variable, one for each run that has the first variable of its expression.
+
+        The result has a value at each sample of this first variable. Other variables have the value of their last
+        sample there, and columns the value in the same row.
+
+        Args:
+            log: The log.
+            otherwise: The variable that takes the place of the first variable if the expression has no variables.
+
+        Raises:
+            LogError: the expression is invalid, or names an unknown variable; or the name exists already.
+        """
+        if self.name in log.table.column_names or self.name in log.names:
+            raise LogError(
+                f"there is a column {self.name!r} already",
+                f"such as other = {self.expression}",
+            )
+        names = find_names(self.expression)
+        known = {drop_run(name) for name in log.names} | set(log.names)
+        first = next((name for name in names if name in known), drop_run(otherwise))
+        # Each run has a series, unless the definition names a single run.
+        bases = [log.series(name) for name in log.names if first in (name, drop_run(name))]
+        alone = len(bases) == 1
+        return [
+            replace(
+                _compute_series(log, self, names, base),
+                name=self.name if alone else f"{self.name} #{base.run}",
+            )
+            for base in bases
+        ]
+
 
 def parse_definition(text: str) -> Definition:
     """Return the definition in a line such as `speed = slope(distance)`; without a name, the expression is the name.
@@ -72,40 +104,6 @@ def parse_definition(text: str) -> Definition:
     if even:
         return Definition(name, even["expression"].strip(), float(even["period_s"]))
     return Definition(name, expression)
-
-
-def compute_derived(log: Log, definition: Definition, otherwise: str) -> list[Series]:
-    """Return the series of a derived variable, one for each run that has the first variable of its expression.
-
-    The result has a value at each sample of this first variable. Other variables have the value of their last sample
-    there, and columns the value in the same row.
-
-    Args:
-        log: The log.
-        definition: The definition of the variable.
-        otherwise: The variable that takes the place of the first variable if the expression has no variables.
-
-    Raises:
-        LogError: the expression is invalid, or names an unknown variable; or the name exists already.
-    """
-    if definition.name in log.table.column_names or definition.name in log.names:
-        raise LogError(
-            f"there is a column {definition.name!r} already",
-            f"such as other = {definition.expression}",
-        )
-    names = find_names(definition.expression)
-    known = {drop_run(name) for name in log.names} | set(log.names)
-    first = next((name for name in names if name in known), drop_run(otherwise))
-    # Each run has a series, unless the definition names a single run.
-    bases = [log.series(name) for name in log.names if first in (name, drop_run(name))]
-    alone = len(bases) == 1
-    return [
-        replace(
-            _compute_series(log, definition, names, base),
-            name=definition.name if alone else f"{definition.name} #{base.run}",
-        )
-        for base in bases
-    ]
 
 
 def _compute_series(log: Log, definition: Definition, names: Sequence[str], base: Series) -> Series:
@@ -181,7 +179,7 @@ def find_named_columns(log: Log, text: str) -> list[str]:
 def add_named_columns(log: Log, text: str) -> Log:
     """Return a log with all computed columns whose names a text contains, see `find_computed_columns`."""
     for name in find_named_columns(log, text):
-        log = log.add_derived(name, compute_derived(log, Definition(name, name), log.names[0]))
+        log = log.add_derived(name, Definition(name, name).compute(log, log.names[0]))
         # In a damaged file, the units may be of another type.
         if isinstance(units := log.metadata.get("units"), dict):
             log = replace(

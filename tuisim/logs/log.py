@@ -252,6 +252,28 @@ class Log:
             self.table.column(column).take(wrap_int64(np.ascontiguousarray(rows, np.int64)))
         )
 
+    def compute_driven_mm(self, series: Series) -> FloatArray | None:
+        """Return the distance driven at each sample of a series in mm, shape (n,); None if there are no positions."""
+        if not {"x_mm", "y_mm"} <= set(self.numeric_columns) or not len(series.rows):
+            return None
+        x_mm, y_mm = (self.pick_numbers(name, series.rows) for name in ("x_mm", "y_mm"))
+        if not (np.isfinite(x_mm).all() and np.isfinite(y_mm).all()):
+            return None
+        return np.append(0.0, np.cumsum(np.hypot(np.diff(x_mm), np.diff(y_mm))))
+
+    def select_variables(self, names: Sequence[str]) -> pa.Table:
+        """Return the rows in which one of some series has a sample.
+
+        In a log with a column for each variable, the columns of other variables are left out.
+        """
+        rows = np.unique(np.concatenate([self.series(name).rows for name in names]))
+        part = self.table if len(rows) == self.rows else self.table.take(rows)
+        if self.layout.variable:
+            return part
+        variables = {drop_run(name) for name in names}
+        others = {*self.layout.values} - variables
+        return part.select([name for name in part.column_names if name not in others])
+
     def find_spec(self, run: int = 0) -> RunSpec | None:
         """Return the specification of a run, given by its index from 0; None if the metadata lack it."""
         if run not in self._cache.specs:

@@ -42,9 +42,8 @@ from tuisim.logs.csv_cells import write_csv
 from tuisim.logs.derived import build_reckoned_series
 from tuisim.logs.export import build_table_metadata, check_target, export_frame, export_log
 from tuisim.logs.frames import build_computed_frame, build_even_frame
-from tuisim.logs.log import Log, LogTable, Series
+from tuisim.logs.log import Series
 from tuisim.logs.mcap_export import POSE, SUFFIX, export_mcap, load_writer
-from tuisim.logs.units import drop_run
 from tuisim.settings.command_line import Arguments
 
 if TYPE_CHECKING:
@@ -313,7 +312,8 @@ def export(arguments: Arguments) -> int:
         return 0
     check_target(arguments.out, (SUFFIX,))
     log = open_single(arguments)
-    export_log(log, _select_part(log, arguments), arguments.out)
+    chosen = log.select_variables(choose_names(log, arguments)) if arguments.variable else log.table
+    export_log(log, chosen, arguments.out)
     echo_written(arguments.out)
     return 0
 
@@ -331,24 +331,6 @@ def _export_mcap(arguments: Arguments) -> None:
         values = counted(infinite, "value is", "values are")
         echo_error(f"note: {target}: {values} infinite, which JSON does not have: left out")
     echo_written(target)
-
-
-def _select_part(log: Log, arguments: Arguments) -> LogTable:
-    """Return the rows of a log in which a chosen variable has a value; all rows if no variable is chosen.
-
-    In a log with a column for each variable, the columns of other variables are left out.
-    """
-    if not arguments.variable:
-        return log.table
-    names = choose_names(log, arguments)
-    rows = np.unique(np.concatenate([log.series(name).rows for name in names]))
-    part = log.table if len(rows) == log.rows else log.table.take(rows)
-    if log.layout.variable:
-        return part
-    variables = {drop_run(name) for name in names}
-    return part.select(
-        [name for name in part.column_names if name in variables or name not in log.layout.values]
-    )
 
 
 def diff(arguments: Arguments) -> int:
