@@ -34,8 +34,8 @@ from tuisim.engine.runs.child.warm import Template
 from tuisim.engine.runs.handle import RunHandle, RunOptions, start_run
 
 ROOT = Path(__file__).resolve().parent.parent
-MATS = {name: getattr(mat_cache, name) for name in ("_in_use", "_store")}
-"""How mats are looked for and stored by users."""
+MATS = {name: getattr(mat_cache, name) for name in ("_in_use", "_store", "_checksum")}
+"""How mats are looked for, stored and checked by users."""
 TEMPLATES = process.MAX_TEMPLATES, run_handle._build_template_key
 """How many templates users have, and for which runs."""
 ALONE = 2
@@ -179,9 +179,22 @@ def _runs_alike_are_forked_from_a_template() -> Iterator[None]:
 
 @pytest.fixture(scope="session", autouse=True)
 def _mats_are_prepared_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """Lay the same prepared mats into every home: to prepare one costs more than most tests."""
-    kept = tmp_path_factory.mktemp("mats")
-    in_use, store = MATS.values()
+    """Lay the same prepared mats into every home: to prepare one costs more than most tests.
+
+    All workers use the same ones. A home that is removed changes the identity of their files, but not what is in them.
+    """
+    base = tmp_path_factory.getbasetemp()
+    kept = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "mats"
+    kept.mkdir(exist_ok=True)
+    in_use, store, checksum = MATS.values()
+    checksums: dict[tuple[int, ...], int] = {}
+
+    def checksum_once(descriptor: int) -> int:
+        found = os.fstat(descriptor)
+        written = found.st_ino, found.st_size, found.st_mtime_ns
+        if written not in checksums:
+            checksums[written] = checksum(descriptor)
+        return checksums[written]
 
     def in_use_or_kept(path: Path, size: int) -> bool:
         if (
@@ -197,19 +210,21 @@ def _mats_are_prepared_once(tmp_path_factory: pytest.TempPathFactory) -> Iterato
 
     def store_and_keep(path: Path, array: Any) -> None:
         store(path, array)
-        if not (kept / path.name).exists():
+        # Another worker may have been quicker.
+        with suppress(FileExistsError):
             link(path, kept / path.name)
 
     def link(path: Path, other: Path) -> None:
-        checksum, _ = mat_cache._noted(path) or (0, ())
+        noted, _ = mat_cache._noted(path) or (0, ())
         os.link(path, other)
         # A file's identity changes when it is linked.
         for one in (path, other):
-            mat_cache._note(one, checksum, one.stat())
+            mat_cache._note(one, noted, one.stat())
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(mat_cache, "_in_use", in_use_or_kept)
         patch.setattr(mat_cache, "_store", store_and_keep)
+        patch.setattr(mat_cache, "_checksum", checksum_once)
         yield
 
 
