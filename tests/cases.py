@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import wraps
 from itertools import product
+from typing import Any
 
 import pytest
 
@@ -13,27 +15,44 @@ def cases(arguments: str, table: Mapping[str, object]) -> pytest.MarkDecorator:
     return pytest.mark.parametrize(arguments, table.values(), ids=table)
 
 
-def for_each(**values: Iterable[object]) -> Callable[[Callable[..., None]], Callable[[], None]]:
+def for_each(**values: Iterable[object]) -> Callable[[Callable[..., None]], Callable[..., None]]:
     """Run a test of a rule for all values, in each combination, as one test: many cases cost more than what they run.
 
     A failure names its values.
     """
+    rows = [dict(zip(values, row, strict=True)) for row in product(*values.values())]
+    return _as_one([(row, row) for row in rows])
 
-    def as_one(test: Callable[..., None]) -> Callable[[], None]:
-        rows = [dict(zip(values, row, strict=True)) for row in product(*values.values())]
 
+def for_rows(
+    arguments: str, table: Mapping[str, Any] | Iterable[Any]
+) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Run a test for each row of a table, as `cases` does, or of a list, but as one test."""
+    names = arguments.split(", ")
+    named = table.items() if isinstance(table, Mapping) else ((row, row) for row in table)
+    return _as_one(
+        [
+            (case, dict(zip(names, row if len(names) > 1 else [row], strict=True)))
+            for case, row in named
+        ]
+    )
+
+
+def _as_one(
+    rows: Sequence[tuple[object, Mapping[str, object]]],
+) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    def as_one(test: Callable[..., None]) -> Callable[..., None]:
+        @wraps(test)
         def run() -> None:
-            for row in rows:
+            for case, row in rows:
                 try:
                     test(**row)
-                except Exception as error:  # whatever it is, it is raised again
-                    error.add_note(f"for {row}")
+                except BaseException as error:  # whatever it is, it is raised again
+                    error.add_note(f"for {case}")
                     raise
 
-        run.__name__ = test.__name__
-        run.__doc__ = test.__doc__
-        run.__module__ = test.__module__
-        run.__qualname__ = test.__qualname__
+        # The fixtures of a test are its parameters; this one asks for none.
+        del run.__wrapped__
         return run
 
     return as_one

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from tests.cases import for_each
 from tests.conftest import ROOT, Command
 from tuisim.engine.core.profile import PROFILES, Library
 from tuisim.engine.runs.brick_state import ROW_BYTES, BrickState
@@ -52,7 +53,7 @@ def test_every_example_program_is_in_the_tests_table() -> None:
     assert sorted(EXAMPLES) == [program.name for program in list_programs()]
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@for_each(name=EXAMPLES)
 def test_each_example_program_has_a_title_and_runs_on_its_mat(name: str) -> None:
     path = ROOT / "programs" / name
     title = next(program.title for program in list_programs() if program.name == name)

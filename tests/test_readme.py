@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from tests.cases import for_each
 from tests.conftest import ROOT, Command
 from tuisim.app.action import label_of_key
 from tuisim.app.actions.keys import ACTIONS
@@ -49,7 +50,7 @@ def is_documented(name: str) -> bool:
     )
 
 
-@pytest.mark.parametrize("what", TABLES)
+@for_each(what=TABLES)
 def test_every_command_option_profile_and_key_is_documented(what: str) -> None:
     assert [name for name in TABLES[what] if not is_documented(name)] == []
 

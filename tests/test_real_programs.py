@@ -15,6 +15,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import for_each
 from tests.conftest import ROOT, Command
 from tuisim.commands.listings import list_ports
 from tuisim.engine.core.spec import RobotSpec
@@ -341,7 +342,7 @@ def test_every_real_program_is_in_the_tests_table() -> None:
     assert {file_of(name) for name in CASES} == {*files, *FOLDER.glob("*/main.py")}
 
 
-@pytest.mark.parametrize("name", CASES)
+@for_each(name=CASES)
 def test_the_robot_built_for_a_real_program_has_the_parts_it_uses(name: str) -> None:
     facts = read_source_facts(read_program(file_of(name)).program)
     assert (facts.library is not None, facts.of_course) == (True, False)

@@ -16,7 +16,7 @@ import pytest
 
 import tuisim
 from tests.api.write_face import FACE, write_face
-from tests.cases import cases
+from tests.cases import cases, for_rows
 from tests.conftest import ROOT
 from tuisim.base.errors import ConfigError, LogError
 from tuisim.commands.guide import find_page
@@ -60,7 +60,7 @@ def test_a_run_that_simulate_returns_holds_the_programs_error() -> None:
     assert (run.state, "ZeroDivisionError" in run.error) == ("raised", True)
 
 
-@cases(
+@for_rows(
     "choices, expected",
     {
         "unknown argument": ({"backgrond": "Loop"}, "did you mean background"),
@@ -360,7 +360,7 @@ def test_descriptions_are_one_line_and_compared_by_their_values() -> None:
         print(world.x)  # type: ignore[attr-defined]
 
 
-@cases(
+@for_rows(
     "describe, words",
     {
         "no such robot": (lambda: tuisim.Robot("Nope"), "no such robot"),

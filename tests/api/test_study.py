@@ -13,7 +13,7 @@ import pandas as pd
 import pytest
 
 import tuisim
-from tests.cases import cases
+from tests.cases import for_rows
 from tuisim.api.measures import describe
 from tuisim.base.errors import ConfigError
 from tuisim.batch.sweep import Workers
@@ -226,7 +226,7 @@ def test_an_experiment_stops_adding_seeds_once_the_mean_is_precise_enough() -> N
     assert frame.groupby("motornoise").size().tolist() == [10, 12]
 
 
-@cases(
+@for_rows(
     "given, words",
     {
         "column": ({"columns": ["x_m"]}, "this robot has no 'x_m'"),

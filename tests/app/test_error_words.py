@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.cases import cases
+from tests.cases import for_rows
 from tuisim.app.error_words import find_remedy, fit_words, shorten_error
 from tuisim.base.errors import TuisimError
 
@@ -22,7 +22,7 @@ IMPORT = "NameError: name 'sleep' is not defined. Did you forget `from time impo
 MAT = "line 1: no such mat 'Grey_bnds', did you mean Grey_bands?"
 
 
-@cases(
+@for_rows(
     "words, width, told",
     {
         "it fits": (NAME, 76, NAME),

@@ -5,13 +5,14 @@ from __future__ import annotations
 import pytest
 
 from tests.app.app_help import notices, open_lab, until
+from tests.cases import for_rows
 from tuisim.app.panel_messages import has_button_calls
 from tuisim.app.snapshot import RunPhase
 
 DRAWS = "from ev3dev2.display import Display\nDisplay().update()\n"
 
 
-@pytest.mark.parametrize(
+@for_rows(
     "text, expected",
     [
         ("import time\nfrom ev3dev2.button import Button\n", True),

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from tests.app.panel_help import moment
+from tests.cases import for_rows
 from tuisim.app.snapshot import AppState, RunPhase, Situation, end_words, shorten_value
 from tuisim.engine.protocol import End, Ended, Unended
 
@@ -16,7 +17,7 @@ def app_state(looks_back: bool, playing: bool, **run: Any) -> AppState:
     return AppState(now, Situation(now.state, has_program=False, has_run=True), looks_back, playing)
 
 
-@pytest.mark.parametrize(
+@for_rows(
     "looks_back, playing, run, status, failed",
     [
         (False, False, {"state": RunPhase.IDLE}, "idle", False),

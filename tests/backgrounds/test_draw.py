@@ -15,6 +15,8 @@ import pytest
 from mats import MATS, picture
 from PIL import Image
 
+from tests.cases import for_each
+
 FOLDER = Path(draw.__file__).parent
 
 
@@ -37,7 +39,7 @@ def test_every_mat_has_one_picture_and_one_entry() -> None:
     assert sorted(drawn) == sorted(MATS) == sorted(path.stem for path in FOLDER.glob("*.png"))
 
 
-@pytest.mark.parametrize("name", MATS)
+@for_each(name=MATS)
 def test_each_mats_picture_file_is_below_its_size_limit(name: str) -> None:
     # Noise is what no picture format makes small.
     limit = 1_000_000 if name == "Noisy_Lollipop" else 200_000

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.cases import cases
+from tests.cases import for_rows
 from tuisim.base.meant import find_meant_names
 
 SENSOR = {
@@ -36,7 +36,7 @@ MEANT = {
 }
 
 
-@cases("wrong, names", MEANT)
+@for_rows("wrong, names", MEANT)
 def test_find_meant_names_gives_the_names_that_a_misspelt_one_is_near(
     wrong: str, names: list[str]
 ) -> None:

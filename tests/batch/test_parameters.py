@@ -6,14 +6,14 @@ from itertools import pairwise
 
 import pytest
 
-from tests.cases import cases
+from tests.cases import for_rows
 from tuisim.base.errors import ConfigError
 from tuisim.batch.parameters import RandomDraw, SampleValues, build_grid, parse_seeds, parse_values
 from tuisim.commands.batch_request import parse_set
 from tuisim.engine.core.values import MAX_SEED
 
 
-@cases(
+@for_rows(
     "text, expected",
     {
         "a list of numbers": ("0,20,50", (0, 20, 50)),
@@ -43,7 +43,7 @@ def test_values_of_a_parameter_are_parsed(text: str, expected: object) -> None:
     assert repr(parse_values(text, "x")) == repr(expected)
 
 
-@cases(
+@for_rows(
     "text, words",
     {
         "nothing": ("", "a value is missing"),

@@ -11,7 +11,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from tests.cases import cases
+from tests.cases import cases, for_rows
 from tests.conftest import Command
 from tests.running import told
 from tuisim.analysis.chart import build_spans
@@ -169,7 +169,7 @@ def test_help_lists_every_subcommand(capsys: pytest.CaptureFixture[str]) -> None
     assert all(f"  {name} " in said for name in SUBCOMMANDS)
 
 
-@cases("entry", SUBCOMMANDS)
+@for_rows("entry", SUBCOMMANDS)
 def test_each_subcommand_of_log_is_documented_and_has_declared_options(entry: Subcommand) -> None:
     assert (entry.load().__doc__ or "").strip()
     assert set(entry.options) <= set(OPTIONS)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.cases import for_rows
 from tuisim.app.kept_breaks import break_lines
 from tuisim.base.errors import ConfigError
 from tuisim.engine.breakpoints import (
@@ -63,7 +64,7 @@ RULES: dict[str, tuple[BreakRule, str]] = {
 }
 
 
-@pytest.mark.parametrize("text, rule, common", [(t, *r) for t, r in RULES.items()], ids=RULES)
+@for_rows("text, rule, common", [(t, *r) for t, r in RULES.items()])
 def test_a_breakpoints_text_is_parsed_and_written_back_the_same(
     text: str, rule: BreakRule, common: str
 ) -> None:
@@ -96,7 +97,7 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize("text, why", WRONG.items(), ids=[text[:20] or "empty" for text in WRONG])
+@for_rows("text, why", WRONG.items())
 def test_a_text_that_is_no_breakpoint_is_refused_with_what_is_allowed(text: str, why: str) -> None:
     with pytest.raises(ConfigError, match="break: ") as refused:
         Breakpoint.parse(text, RUN)

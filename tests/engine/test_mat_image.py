@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from tests.cases import cases
+from tests.cases import cases, for_rows
 from tests.conftest import Command
 from tuisim.base.errors import BackgroundError
 from tuisim.engine import mat_cache, mat_image
@@ -280,7 +280,7 @@ def _lab(shade: str) -> Image.Image:
     return Image.new("LAB", (64, 64), (255 * (shade == "white"), 128, 128))
 
 
-@cases(
+@for_rows(
     "array, shade",
     {
         "16 bits": (np.full((9, 9), 32896, np.uint16), 128),

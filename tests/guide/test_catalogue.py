@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.app.terminals import Terminal
-from tests.cases import cases
+from tests.cases import cases, for_each
 from tests.conftest import ROOT, Command
 from tuisim.app.actions.keys import ACTIONS
 from tuisim.cli import COMMANDS
@@ -44,7 +44,7 @@ def test_every_generated_table_is_used_in_a_page_of_the_guide() -> None:
     )
 
 
-@pytest.mark.parametrize("name", TABLES)
+@for_each(name=TABLES)
 def test_every_row_of_a_guides_table_has_a_cell_for_each_column(name: str) -> None:
     made = load_table(name)
     assert made.rows

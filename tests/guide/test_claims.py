@@ -19,6 +19,7 @@ from typing import Any
 
 import pytest
 
+from tests.cases import for_each
 from tests.conftest import ROOT, Command
 from tests.guide.documents import DOCUMENTS, blocks
 from tuisim.guide.catalogue import load_pages
@@ -95,7 +96,7 @@ def _says(claim: dict[str, Any]) -> list[str]:
     return [_plain(one) for one in ([said] if isinstance(said, str) else said)]
 
 
-@pytest.mark.parametrize("name", [*TEXTS, *LESSONS])
+@for_each(name=[*TEXTS, *LESSONS])
 def test_each_sentence_of_the_guide_with_a_number_has_a_claim(name: str) -> None:
     said = [one for claim in CLAIMS.get(name, []) for one in _says(claim)]
     assert [
@@ -103,7 +104,7 @@ def test_each_sentence_of_the_guide_with_a_number_has_a_claim(name: str) -> None
     ] == []
 
 
-@pytest.mark.parametrize("name", CLAIMS)
+@for_each(name=CLAIMS)
 def test_each_claims_sentence_is_in_its_page_and_its_test_exists(name: str) -> None:
     text = "\n".join(_paragraphs(name))
     for claim in CLAIMS[name]:

@@ -10,7 +10,7 @@ import pyarrow as pa
 import pytest
 from numpy.typing import NDArray
 
-from tests.cases import cases
+from tests.cases import for_rows
 from tuisim.logs.bands import build_band_report
 from tuisim.logs.columns import choose_columns
 from tuisim.logs.log import Log
@@ -118,7 +118,7 @@ CLEAN = {
 }
 
 
-@cases("values, expected", CLEAN)
+@for_rows("values, expected", CLEAN)
 def test_find_plateaus_gives_start_stop_and_level_of_each(
     values: list[float], expected: list[tuple[int, int, float]]
 ) -> None:
@@ -198,7 +198,7 @@ def test_plateaus_found_in_drawn_logs_have_the_recorded_sums(
     assert [len(found), *figures] == pytest.approx(sums, abs=0.01)
 
 
-@pytest.mark.parametrize(
+@for_rows(
     "name, grey",
     [
         ("Colour", "white"),

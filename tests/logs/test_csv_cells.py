@@ -6,8 +6,8 @@ import csv
 from pathlib import Path
 
 import pandas as pd
-import pytest
 
+from tests.cases import for_each
 from tests.conftest import Command
 from tuisim.logs.csv_cells import escape_formula
 from tuisim.logs.export import export_frame
@@ -30,12 +30,12 @@ FORMULAS = (
 PLAIN = ("ada", "", "'quoted'", "a = 1", "-5", "+3.25", "-1e-9", "x-1", "print('=')")
 
 
-@pytest.mark.parametrize("text", FORMULAS)
+@for_each(text=FORMULAS)
 def test_a_csv_text_that_looks_like_a_formula_gets_an_apostrophe(text: str) -> None:
     assert escape_formula(text) == f"'{text}"
 
 
-@pytest.mark.parametrize("text", PLAIN)
+@for_each(text=PLAIN)
 def test_other_texts_and_numbers_stay_as_they_are(text: str) -> None:
     assert escape_formula(text) == text
 

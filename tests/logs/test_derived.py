@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tests.app.analyser.logs import long_log, model_of, wide_log
-from tests.cases import cases
+from tests.cases import for_rows
 from tests.logs.test_signals import column
 from tuisim.app.analyser.panes import PANES
 from tuisim.base.errors import LogError
@@ -39,7 +39,7 @@ DEFINED = {
 }
 
 
-@cases("text, values", DEFINED)
+@for_rows("text, values", DEFINED)
 def test_a_derived_variable_has_the_values_of_its_expression(text: str, values: np.ndarray) -> None:
     model = model_of(long_log())
     model.derive(text)
@@ -70,7 +70,7 @@ def test_dead_reckoning_from_text_columns_is_refused() -> None:
         build_reckoned_series(Log("test", table, choose_columns(table)))
 
 
-@cases("text, said", REFUSED)
+@for_rows("text, said", REFUSED)
 def test_a_faulty_derived_variable_is_refused_and_leaves_the_log_unchanged(
     text: str, said: str
 ) -> None:

@@ -16,7 +16,7 @@ import pandas as pd
 import pyarrow as pa
 import pytest
 
-from tests.cases import cases
+from tests.cases import cases, for_each
 from tests.engine.runs.run_recorder import Recorder
 from tuisim.base.errors import ExportError, LogError
 from tuisim.engine.core.spec import RunSpec
@@ -360,9 +360,8 @@ def test_the_log_of_a_run_is_read_without_pandas(
     assert done.stdout == "[30, 30] False\n"
 
 
-@pytest.mark.parametrize(
-    "metadata",
-    [
+@for_each(
+    metadata=[
         {},
         {"runs": []},
         {"runs": 3},
@@ -371,8 +370,7 @@ def test_the_log_of_a_run_is_read_without_pandas(
         {"runs": [{}]},
         {"runs": [{"robot": {}}]},
         {"runs": [{"world": {"noise": {"light": "?"}}}]},
-    ],
-    ids=str,
+    ]
 )
 def test_damaged_metadata_of_a_log_are_read_as_no_run(metadata: dict[str, Any]) -> None:
     assert read_spec(metadata) is None

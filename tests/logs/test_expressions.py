@@ -7,7 +7,7 @@ import math
 import pytest
 from numpy.testing import assert_allclose
 
-from tests.cases import cases
+from tests.cases import for_rows
 from tests.logs.test_signals import NAN, column
 from tuisim.base.errors import LogError
 from tuisim.logs.expressions import FUNCTIONS, MAX_CHARS, evaluate
@@ -40,7 +40,7 @@ VALUES = {
 }
 
 
-@pytest.mark.parametrize("text, expected", VALUES.items(), ids=VALUES)
+@for_rows("text, expected", VALUES.items())
 def test_each_expression_computes_the_expected_values(text: str, expected: list[float]) -> None:
     assert_allclose(evaluate(text, COLUMNS), expected)
 
@@ -80,7 +80,7 @@ def test_an_expression_beyond_the_longest_allowed_is_refused() -> None:
         evaluate(f"{text} ", COLUMNS)
 
 
-@cases("text", REFUSED)
+@for_rows("text", REFUSED)
 def test_a_wrong_expression_is_refused(text: str) -> None:
     with pytest.raises(LogError):
         evaluate(text, COLUMNS)

@@ -8,7 +8,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from tests.cases import cases
+from tests.cases import for_rows
 from tuisim.logs.choices import ReadChoices
 from tuisim.logs.columns import choose_columns
 from tuisim.logs.log import Log
@@ -60,7 +60,7 @@ ROWS = {
 }
 
 
-@cases("log, expected", ROWS)
+@for_rows("log, expected", ROWS)
 def test_each_variable_of_a_log_has_its_rows(log: Log, expected: dict[str, list[int]]) -> None:
     assert {name: list(log.series(name).rows) for name in log.names} == expected
     assert list(log.names) == list(expected)

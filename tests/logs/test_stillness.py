@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tests.cases import cases
+from tests.cases import for_each, for_rows
 from tests.logs.test_bands import made_log, short_log
 from tuisim.logs.plateaus import find_plateaus
 
@@ -30,15 +30,14 @@ UNLEVEL = {
 }
 
 
-@cases("values", UNLEVEL)
+@for_rows("values", UNLEVEL)
 def test_no_plateau_is_found_in_a_signal_that_keeps_moving(values: list[float]) -> None:
     rng = np.random.default_rng(1)
     assert not len(find_plateaus(np.array(values)))
     assert not len(find_plateaus(np.array(values) + rng.normal(0.0, 0.3, len(values))))
 
 
-@pytest.mark.parametrize("samples", [8, 10, 14, 20, 30])
-@pytest.mark.parametrize("noise", [0.0, 0.4])
+@for_each(samples=[8, 10, 14, 20, 30], noise=[0.0, 0.4])
 def test_a_slope_between_two_levels_is_not_taken_for_a_level(samples: int, noise: float) -> None:
     values = np.array([60.0] * 20 + ramp(samples, 62.0, 88.0) + [90.0] * 20)
     values += np.random.default_rng(2).normal(0.0, noise, len(values))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.cases import for_rows
 from tests.notebook.conftest import Cell
 from tuisim.engine.runs.records import OutputRow, Stream
 from tuisim.engine.runs.store import RunStore
@@ -21,7 +22,7 @@ LINES = [
 ]
 
 
-@pytest.mark.parametrize("text, side", LINES, ids=[text for text, _ in LINES])
+@for_rows("text, side", LINES)
 def test_a_printed_line_image_data_names_the_sensor_sides_to_log(text: str, side: str) -> None:
     assert parse_side(OutputRow(text, 0, 0, 1, Stream.STDOUT)) == side
     assert parse_side(OutputRow(text, 0, 0, 1, Stream.STDERR)) == ""

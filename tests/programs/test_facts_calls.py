@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.cases import cases
+from tests.cases import for_rows
 from tuisim.base.source import Program
 from tuisim.programs.facts import read_facts
 
@@ -76,6 +76,6 @@ CALLS = {
 }
 
 
-@cases("text, call, lines", CALLS)
+@for_rows("text, call, lines", CALLS)
 def test_calls_are_found_under_any_name(text: str, call: str, lines: list[int]) -> None:
     assert read_facts(Program("p.py", text, "preloaded")).find_calls(call) == lines

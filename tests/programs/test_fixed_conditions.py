@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.cases import cases
+from tests.cases import cases, for_rows
 from tuisim.base.source import Program
 from tuisim.programs.facts import read_facts
 
@@ -11,7 +11,7 @@ def list_texts(text: str) -> list[str]:
     return [words for _, words in read_facts(Program("p.py", text)).slips]
 
 
-@cases(
+@for_rows(
     "test, words",
     {
         "two sides": (
@@ -82,7 +82,7 @@ def test_a_condition_that_is_always_the_same_is_told_with_its_cure(test: str, wo
     assert list_texts(f"HIGH = 9\nLOW = 5\nwhile {test}:\n    go()\n") == [words]
 
 
-@cases(
+@for_rows(
     "test",
     {
         "a span": "5 < x < 9",

@@ -17,7 +17,7 @@ from ev3dev2.motor import SpeedPercent as Speed
 from numpy import mean
 
 import tuisim
-from tests.cases import cases
+from tests.cases import for_rows
 from tuisim.base.errors import ConfigError
 from tuisim.programs.function import read_function
 
@@ -389,7 +389,7 @@ def _without_source() -> Any:
     return names["typed"]
 
 
-@cases(
+@for_rows(
     "program, words",
     {
         "a value that cannot go along": (use_world, "use_world uses WORLD, a World, which cannot"),

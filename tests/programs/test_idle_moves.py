@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.cases import cases
+from tests.cases import cases, for_rows
 from tuisim.base.source import Program
 from tuisim.programs.facts import read_facts
 from tuisim.programs.idle_moves import list_stopping_loops
@@ -52,7 +52,7 @@ def test_a_move_without_effect_is_told(text: str, words: str) -> None:
     assert list_texts(text) == [words]
 
 
-@cases(
+@for_rows(
     "text",
     {
         "a wait between": "tank.on(20, 20)\nsleep(1)\ntank.off()\n",
@@ -92,19 +92,22 @@ def test_a_move_without_effect_is_told(text: str, words: str) -> None:
             "    if us < 2:\n        break\n"
         ),
     },
-)  # fmt: skip
+)
 def test_a_move_with_an_effect_is_not_blamed(text: str) -> None:
     assert list_texts(text) == []
 
 
-@cases(
+@for_rows(
     "text, is_told",
     {
         "in the loop": ("tank.on(20, 20)\nwhile us > 5:\n    print(us)\n    tank.off()\n", True),
         "after the loop": ("tank.on(20, 20)\nwhile us > 5:\n    print(us)\ntank.off()\n", False),
         "in a branch": ("tank.on(9, 9)\nwhile us > 5:\n    if x:\n        tank.off()\n", False),
         "with a break": ("tank.on(9, 9)\nwhile us > 5:\n    tank.off()\n    break\n", False),
-        "started again": ("tank.on(9, 9)\nwhile us > 5:\n    tank.off()\n    steer.on(9, 9)\n", False),
+        "started again": (
+            "tank.on(9, 9)\nwhile us > 5:\n    tank.off()\n    steer.on(9, 9)\n",
+            False,
+        ),
         "by a function": (
             "def go():\n    tank.on(9, 9)\ntank.on(9, 9)\nwhile us > 5:\n    tank.off()\n    go()\n",
             False,
@@ -112,7 +115,7 @@ def test_a_move_with_an_effect_is_not_blamed(text: str) -> None:
         "without a start": ("while us > 5:\n    tank.off()\n", False),
         "for ever": ("tank.on(9, 9)\nwhile True:\n    tank.off()\n", False),
     },
-)  # fmt: skip
+)
 def test_a_stop_in_the_first_pass_of_a_loop_is_found(text: str, is_told: bool) -> None:
     tree = read_facts(Program("p.py", MAKES + text)).tree
     assert bool([*list_stopping_loops(tree)]) is is_told

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.cases import cases
+from tests.cases import for_rows
 from tuisim.programs.mistakes import find_fault
 from tuisim.programs.program_file import find_mistake
 
@@ -26,7 +26,7 @@ FAULTS = {
 }
 
 
-@cases("text, fault", FAULTS)
+@for_rows("text, fault", FAULTS)
 def test_a_program_that_does_not_compile_has_a_fault(
     text: str, fault: tuple[str, int] | None
 ) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.cases import cases
+from tests.cases import cases, for_rows
 from tuisim.base.source import Program
 from tuisim.programs.facts import read_facts
 
@@ -125,7 +125,7 @@ def test_a_value_alone_on_a_line_is_not_told_to_be_called() -> None:
 HUB = "from pybricks.hubs import Hub; hub = eye = self.bumper = motor = Hub()\n"
 
 
-@cases(
+@for_rows(
     "text, slip",
     {
         "compared": (
@@ -167,7 +167,7 @@ NONE = "TypeError: unsupported operand type(s) for +: 'NoneType' and 'int'"
 MEASURE = "def measure():\n    x = 1\n"
 
 
-@cases(
+@for_rows(
     "text, error, cause",
     {
         "a method": (

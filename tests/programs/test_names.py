@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import for_each, for_rows
 from tests.conftest import ROOT
 from tuisim.programs.names import find_unknown_names
 
@@ -17,7 +18,7 @@ def found(text: str) -> list[tuple[int, int, int, str]] | None:
     return None if names is None else [(one.row, one.start, one.end, one.hint) for one in names]
 
 
-@pytest.mark.parametrize(
+@for_rows(
     "text, unknown",
     [
         ("tank_drve.on(1)", [(0, 0, 9, "did you mean `tank_drive`?")]),
@@ -41,22 +42,6 @@ def found(text: str) -> list[tuple[int, int, int, str]] | None:
         ("tank_drive.\nfoo", [(1, 0, 3, "")]),
         ("for n in rnge(\n    print(n, foo)", [(1, 13, 16, "")]),
     ],
-    ids=[
-        "prelude",
-        "builtin and case",
-        "not ASCII",
-        "local elsewhere",
-        "import",
-        "function of time",
-        "of random",
-        "of math",
-        "other prelude",
-        "no prelude",
-        "library",
-        "class",
-        "unfinished line",
-        "unfinished head",
-    ],
 )
 def test_names_used_without_a_definition_are_found_in_a_program(
     text: str, unknown: list[tuple[int, int, int, str]]
@@ -64,9 +49,8 @@ def test_names_used_without_a_definition_are_found_in_a_program(
     assert found(text) == unknown
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
+@for_each(
+    text=[
         "def f():\n    return later\n\nlater = f",
         "def f():\n    global made\n    made = 1\n\nf()\nprint(made)",
         "[x for x in range(3)]",
@@ -77,7 +61,7 @@ def test_names_used_without_a_definition_are_found_in_a_program(
         "match 1:\n    case [a, *b]:\n        print(a, b)",
         "import os.path as p\np, say, gyro, get_clock",
         "for i in range(3):\n    del i",
-    ],
+    ]
 )
 def test_names_that_are_defined_in_any_way_are_not_called_unknown(text: str) -> None:
     assert found(text) == []
@@ -90,6 +74,6 @@ def test_names_are_not_checked_where_they_may_come_from_elsewhere(text: str) -> 
     assert found(text) is None
 
 
-@pytest.mark.parametrize("path", PROGRAMS, ids=lambda path: path.stem)
+@for_each(path=PROGRAMS)
 def test_the_examples_have_no_unknown_names(path: Path) -> None:
     assert not found(path.read_text())

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cases import cases
+from tests.cases import for_rows
 from tuisim.base.errors import ConfigError
 from tuisim.programs.program_file import (
     MAX_PROGRAM_BYTES,
@@ -131,7 +131,7 @@ MAGIC_MATS = {
 }
 
 
-@cases("before, after", MAGIC_MATS)
+@for_rows("before, after", MAGIC_MATS)
 def test_a_mat_is_written_into_the_magic_line(before: str, after: str) -> None:
     assert replace_mat(before, "p.py", "Loop") == after
 
@@ -139,7 +139,7 @@ def test_a_mat_is_written_into_the_magic_line(before: str, after: str) -> None:
 PLAIN = "import time\nprint(1)\n"
 
 
-@pytest.mark.parametrize(
+@for_rows(
     "text, line, prelude, comment",
     [
         ("%%sim_magic_preloaded -b Loop -OHR\n" + PLAIN, 1, "preloaded", False),
@@ -155,16 +155,6 @@ PLAIN = "import time\nprint(1)\n"
             "imports",
             True,
         ),
-    ],
-    ids=[
-        "raw",
-        "raw imports",
-        "one percent",
-        "comment",
-        "no blank",
-        "after a docstring",
-        "long docstring",
-        "shebang",
     ],
 )
 def test_magic_line_is_found(text: str, line: int, prelude: str, comment: bool) -> None:
@@ -197,7 +187,7 @@ def test_a_raw_magic_line_becomes_a_comment_and_lines_keep_their_numbers(
     assert program.options["background"] == "Grey_bands"
 
 
-@pytest.mark.parametrize(
+@for_rows(
     "text, prelude",
     [
         ("from ev3dev2.motor import MoveTank\n", "none"),
@@ -218,26 +208,6 @@ def test_a_raw_magic_line_becomes_a_comment_and_lines_keep_their_numbers(
         ("print(eval(input()))\n", "preloaded"),
         ("tank_drive.on(10, 10\n", "preloaded"),
         ("# %%sim_magic_imports --preload none\n", "none"),
-    ],
-    ids=[
-        "from",
-        "import",
-        "inside",
-        "broken import",
-        "in a text",
-        "glue",
-        "own module",
-        "used",
-        "all of a module",
-        "used in a function",
-        "argument",
-        "attribute",
-        "global",
-        "own function",
-        "comment",
-        "eval",
-        "broken",
-        "switch in the magic",
     ],
 )
 def test_imports_decide_which_names_are_predefined(text: str, prelude: str) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from tests.cases import cases
+from tests.cases import cases, for_each, for_rows
 from tuisim.base.errors import ProfileError, RobotError
 from tuisim.engine.core.profile import PROFILES
 from tuisim.programs.program_file import parse_program, read_program
@@ -196,7 +196,7 @@ CASES: Mapping[str, tuple[str, dict[str, Any], tuple[str, str, tuple[float, floa
 }
 
 
-@pytest.mark.parametrize("case", CASES)
+@for_each(case=CASES)
 def test_a_program_decides_profile_robot_and_place(case: str) -> None:
     text, given, (profile, robot, place) = CASES[case]
     above = [given["above"]] if "above" in given else []
@@ -495,7 +495,7 @@ GROUNDS: Mapping[str, tuple[str, dict[str, Any], tuple[bool, bool]]] = {
 }
 
 
-@cases("text, chosen, ground", GROUNDS)
+@for_rows("text, chosen, ground", GROUNDS)
 def test_a_brick_program_drives_on_an_open_floor_unless_walls_are_chosen(
     text: str, chosen: dict[str, Any], ground: tuple[bool, bool]
 ) -> None:

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import pytest
 
-from tests.cases import cases
+from tests.cases import for_rows
 from tuisim.base.source import Program
 from tuisim.programs.facts import ProgramFacts, Question, read_facts
 
@@ -68,12 +68,12 @@ def ask(text: str) -> Question:
     )
 
 
-@cases("text", WAITS)
+@for_rows("text", WAITS)
 def test_a_reading_that_a_condition_depends_on_counts_as_waited_for(text: str) -> None:
     assert ask(text).decides
 
 
-@cases("text", LOGS)
+@for_rows("text", LOGS)
 def test_a_reading_that_is_only_shown_or_stored_is_not_waited_for(text: str) -> None:
     assert not ask(text).decides
 
@@ -99,8 +99,8 @@ def test_a_press_that_only_ends_the_program_is_recognized(text: str, is_last: bo
     assert ask(text).is_last is is_last
 
 
-@pytest.mark.parametrize(
-    ("text", "buttons", "needs_all"),
+@for_rows(
+    "text, buttons, needs_all",
     [
         ("while not btn.any():  # reads\n    pass", (), False),
         ("btn.wait_for_pressed('left')  # reads", ("left",), False),

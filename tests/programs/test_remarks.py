@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.cases import cases
+from tests.cases import cases, for_rows
 from tuisim.base.source import Program
 from tuisim.programs.facts import ProgramFacts
 
@@ -44,7 +44,7 @@ def test_wheels_set_against_each_other_are_no_way_forwards(text: str, words: lis
     assert [spin.words for spin in facts.remarks.list_spins()] == words
 
 
-@cases(
+@for_rows(
     "text, words",
     {
         "cm": (

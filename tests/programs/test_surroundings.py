@@ -10,7 +10,7 @@ import numpy as np
 from IPython.core.interactiveshell import InteractiveShell
 
 import tuisim
-from tests.cases import cases
+from tests.cases import for_rows
 from tuisim.base.syntax_tree import parse_expression
 from tuisim.programs.function import read_function
 from tuisim.programs.surroundings import compute
@@ -49,7 +49,7 @@ VALUES: dict[str, Any] = {"KP": 4.0, "m": math, "sqrt": math.sqrt, "ask": input,
 VALUES["array"] = np.arange(3)
 
 
-@cases(
+@for_rows(
     "text, value",
     {
         "operators": ("KP / 8", "0.5"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.cases import cases
+from tests.cases import cases, for_rows
 from tuisim.base.source import Program
 from tuisim.programs.facts import ProgramFacts
 from tuisim.programs.uses import list_lone_stops, list_lost_values, list_stale_reads
@@ -14,7 +14,7 @@ def read(text: str) -> ProgramFacts:
     return ProgramFacts(Program("task.py", text))
 
 
-@cases(
+@for_rows(
     "text, uses",
     {
         "a comparison": (f"{READ}while True:\n    if light < 20:\n        pass\n", [(3, "<")]),
@@ -109,7 +109,7 @@ def test_a_stop_that_depends_on_one_reading_is_found(text: str, lines: object) -
 LOST = "count = 0\ndef look():\n    {}\nlook()\nprint(count)\n"
 
 
-@cases(
+@for_rows(
     "text, line",
     {
         "assigned": (LOST.format("count = 1"), 3),

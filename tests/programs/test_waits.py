@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
-import pytest
-
-from tests.cases import cases
+from tests.cases import cases, for_each, for_rows
 from tests.effort import count_calls
 from tuisim.base.source import Program
 from tuisim.programs.facts import ProgramFacts, read_facts
@@ -61,7 +59,7 @@ def read(text: str) -> ProgramFacts:
     return read_facts(Program("p.py", text))
 
 
-@cases("text, operator, limit, attribute, line", WAITED_FOR)
+@for_rows("text, operator, limit, attribute, line", WAITED_FOR)
 def test_a_loop_that_compares_a_reading_with_a_constant_is_found_as_a_wait(
     text: str, operator: str, limit: str | int, attribute: str, line: int
 ) -> None:
@@ -70,9 +68,8 @@ def test_a_loop_that_compares_a_reading_with_a_constant_is_found_as_a_wait(
     assert (end.attribute, end.read_line, end.set_line) == (attribute, line, 0)
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
+@for_each(
+    text=[
         "while True:\n    follow()",
         "while running == True:\n    drive()",
         "while gyro.angle < goal:\n    pass",
@@ -92,7 +89,7 @@ def test_a_loop_that_compares_a_reading_with_a_constant_is_found_as_a_wait(
         "v = 1\nwhile v > 0 and ready():\n    wait(5)",
         "while gyro.angle < 90 or ready():\n    wait(5)",
         "while True:\n    if gyro.angle > 90:\n        stop()",
-    ],
+    ]
 )
 def test_no_end_is_named_for_loops_whose_condition_is_not_a_simple_comparison(text: str) -> None:
     assert read(text).loop_ends == ()
@@ -128,7 +125,7 @@ def test_a_loop_that_compares_a_change_names_the_line_of_the_first_reading(
     assert (loop.operator, loop.limit, loop.attribute, loop.start_line) == end
 
 
-@cases(
+@for_rows(
     "text, line",
     {
         "never counted": ("n = 0\nwhile n < 4:\n    go()", 1),
@@ -180,7 +177,7 @@ def test_the_angle_or_rotations_of_a_motor_call_are_found(
     assert read(call).find_turns(2) is None
 
 
-@cases(
+@for_rows(
     "text, line",
     {
         "a tank": ("import x\ntank.on(30, 30)", 2),

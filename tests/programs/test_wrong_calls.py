@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.cases import cases
+from tests.cases import cases, for_rows
 from tuisim.base.source import Program
 from tuisim.programs.facts import read_facts
 
@@ -23,7 +23,7 @@ def explain(call: str, error: str, makes: str = MAKES) -> str:
     return read_facts(Program("p.py", text)).explain_error(error, len(text.splitlines()))
 
 
-@cases(
+@for_rows(
     "call, error, cause",
     {
         "two equal speeds": (

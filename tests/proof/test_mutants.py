@@ -7,13 +7,14 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import for_rows
 from tests.conftest import ROOT
 from tests.proof.__main__ import main
 from tests.proof.mutants import draw_mutants, find_failure, find_mutants, find_tests
 
 
-@pytest.mark.parametrize(
-    ("text", "flips"),
+@for_rows(
+    "text, flips",
     [
         ("a < b", ["a <= b", "a >= b"]),
         ("a == b", ["a != b"]),

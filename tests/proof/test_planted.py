@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import pytest
 
+from tests.cases import for_each
 from tests.conftest import ROOT
 from tests.isolated import needs_isolation, refusal
 from tests.proof.planted import PLANTED, Planted, faults, missed
 
 
-@pytest.mark.parametrize("fault", PLANTED, ids=lambda fault: fault.about)
+@for_each(fault=PLANTED)
 def test_the_code_that_each_planted_fault_replaces_occurs_once(fault: Planted) -> None:
     text = (ROOT / "tuisim" / fault.file).read_text()
     assert (text.count(fault.old), fault.new != fault.old, bool(fault.shows)) == (1, True, True)

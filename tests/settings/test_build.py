@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 
+from tests.cases import for_each
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.outline import build_outline
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, RobotSpec
@@ -19,7 +20,7 @@ from tuisim.settings.shared_options import parse_words
 SHIPPED = {name: mat for name, mat in catalogue().items() if mat.shipped}
 
 
-@pytest.mark.parametrize("name", SHIPPED)
+@for_each(name=SHIPPED)
 def test_on_each_mat_the_robot_starts_where_it_can_turn_between_solid_walls(name: str) -> None:
     spec = build_run_spec(Settings({"background": name, "profile": "ev3"}))
     reach = build_outline(spec.robot).reach_mm

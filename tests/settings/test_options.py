@@ -6,12 +6,13 @@ from typing import Any
 
 import pytest
 
+from tests.cases import for_rows
 from tuisim.base.errors import ConfigError
 from tuisim.settings.options import OPTIONS, RUN_VALUES, Settings
 from tuisim.settings.shared_options import parse_words
 
 
-@pytest.mark.parametrize(
+@for_rows(
     "words, fields",
     [
         ("", {}),
@@ -58,13 +59,12 @@ from tuisim.settings.shared_options import parse_words
             {"robot": "Small_Robot", "obstacles": "None", "preload": "none"},
         ),
     ],
-    ids=lambda value: value or "nothing" if isinstance(value, str) else "",
 )
 def test_words_of_options_are_parsed_to_their_values(words: str, fields: dict[str, Any]) -> None:
     assert parse_words(words.split()) == fields
 
 
-@pytest.mark.parametrize(
+@for_rows(
     "words, said",
     [
         ("-x abc", r"^-x: must be a number from .*'abc'"),
@@ -89,7 +89,6 @@ def test_words_of_options_are_parsed_to_their_values(words: str, fields: dict[st
         ("-Q", "no such option: -Q"),
         ("--frob 3", "no such option: --frob"),
     ],
-    ids=lambda value: value if value.startswith("-") else "",
 )
 def test_wrong_values_of_options_are_refused_with_what_is_allowed(words: str, said: str) -> None:
     with pytest.raises(ConfigError, match=said):

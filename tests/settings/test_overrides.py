@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from tests.cases import cases
+from tests.cases import for_rows
 from tuisim.base.errors import ConfigError
 from tuisim.engine.core.drift_spec import DriftSpec
 from tuisim.engine.core.spec import RunSpec
@@ -24,7 +24,7 @@ def spec_with(values: dict[str, Any], **chosen: Any) -> RunSpec:
     return build_run_spec(Settings.merge(chosen, resolve_keys(values, Settings(chosen), HERE)))
 
 
-@cases(
+@for_rows(
     "values, read, expected",
     {
         "noise": ({"noise.motor": 20}, lambda spec: spec.world.noise.motor, 20),
@@ -91,7 +91,7 @@ def test_arguments_given_as_one_text_are_split_as_in_a_shell(
     assert resolve_keys({"arguments": value}, Settings(), HERE)["arguments"] == expected
 
 
-@cases(
+@for_rows(
     "values, words",
     {
         "misspelt": ({"noise.motr": 1}, r"^set: noise.motr: no such key .did you mean motor"),

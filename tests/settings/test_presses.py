@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.cases import cases
+from tests.cases import cases, for_rows
 from tuisim.base.errors import ConfigError
 from tuisim.engine.core.spec import PRESSABLE
 from tuisim.engine.protocol import SetButtons
@@ -45,7 +45,7 @@ WRONG = {
 }
 
 
-@cases("text, message", WRONG)
+@for_rows("text, message", WRONG)
 def test_a_wrong_planned_press_says_what_is_allowed(text: str, message: str) -> None:
     with pytest.raises(ConfigError) as raised:
         parse(PRESSES, text, "--press")

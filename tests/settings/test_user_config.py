@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cases import cases
+from tests.cases import for_rows
 from tests.conftest import ROOT
 from tuisim.base.errors import ConfigError
 from tuisim.settings.user_config import (
@@ -29,7 +29,7 @@ def _home(home: Path) -> None:
     """Each test has its own file."""
 
 
-@cases(
+@for_rows(
     "text, problem",
     {
         "no table": ("fps = 20", "fps: no such table (it belongs into [app]; see `tuisim guide s"),

@@ -9,6 +9,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
+from tests.cases import for_each
 from tuisim.terminal.cell_image import CELL_PX, Cell, CellGrid, Look, draw_cells, draw_cells_svg
 
 RED = (255, 0, 0)
@@ -49,7 +50,7 @@ FILLED = {
 }
 
 
-@pytest.mark.parametrize("name", FILLED)
+@for_each(name=FILLED)
 def test_block_characters_in_a_screenshot_fill_their_part_of_the_cell(name: str) -> None:
     char, parts = FILLED[name]
     width, height = CELL_PX
@@ -78,7 +79,7 @@ LINES = {
 }
 
 
-@pytest.mark.parametrize("name", LINES)
+@for_each(name=LINES)
 def test_line_characters_in_a_screenshot_reach_the_cells_edges(name: str) -> None:
     char, edges = LINES[name]
     light = pixels([cells(char)])[..., 0] > 128

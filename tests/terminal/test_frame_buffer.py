@@ -15,7 +15,7 @@ from textual._compositor import ChopsUpdate, CompositorUpdate, InlineUpdate, Lay
 from textual.geometry import Region
 from textual.strip import Strip
 
-from tests.cases import cases
+from tests.cases import cases, for_rows
 from tuisim.terminal.cell_view import CellStrip
 from tuisim.terminal.cells import MONO, PALETTE_8, PALETTE_16, PALETTE_256
 from tuisim.terminal.frame_buffer import FrameBuffer, TextMode
@@ -89,7 +89,7 @@ def test_the_frame_buffer_sends_only_changed_text(before: str, after: str, codes
     assert sent(frame_buffer, rows([text(after)])) == codes
 
 
-@cases(
+@for_rows(
     "strip, mode, codes",
     {
         "even cells": (CellStrip([0xFF0000_FF0000] * 3), FULL, "\x1b[48;2;255;0;0m   \x1b[0m"),

@@ -7,7 +7,7 @@ import unicodedata
 import numpy as np
 import pytest
 
-from tests.cases import cases
+from tests.cases import for_rows
 from tuisim.terminal.glyphs import GLYPHS, build_glyph_set
 from tuisim.terminal.picture_options import CellSet
 
@@ -19,7 +19,7 @@ def shown(cells: CellSet) -> dict[str, str]:
     return dict(zip((GLYPHS[number] for number in glyphs.numbers), points, strict=True))
 
 
-@cases(
+@for_rows(
     "cells, glyph, points",
     {
         "upper half": (CellSet.HALF, "▀", "#."),

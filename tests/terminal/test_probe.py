@@ -10,7 +10,7 @@ from collections.abc import Mapping
 
 import pytest
 
-from tests.cases import cases
+from tests.cases import cases, for_rows
 from tests.running import PATIENCE_S
 from tuisim.terminal import probe
 from tuisim.terminal.picture_options import CellSet
@@ -19,7 +19,7 @@ from tuisim.terminal.probe import choose_cells, find_cells, read_cells
 ATTRIBUTES = b"\x1b[?62;4c"
 
 
-@cases(
+@for_rows(
     "name, octant_cols, cells",
     {
         "kitty": ("kitty(0.42.1)", 1, CellSet.OCTANT),
@@ -44,7 +44,7 @@ def test_fine_glyphs_are_chosen_only_for_terminals_that_draw_them(
     assert find_cells(name, octant_cols) is cells
 
 
-@cases(
+@for_rows(
     "environment, cells",
     {
         "dumb": ({"TERM": "dumb", "LANG": "en_GB.UTF-8"}, CellSet.ASCII),

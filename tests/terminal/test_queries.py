@@ -11,7 +11,7 @@ import pytest
 from textual import events
 from textual.message import Message
 
-from tests.cases import cases, for_each
+from tests.cases import cases, for_each, for_rows
 from tuisim.terminal import queries
 from tuisim.terminal.picture import Graphics
 from tuisim.terminal.picture_mode import choose_graphics
@@ -103,7 +103,7 @@ CHOICES = {
 }
 
 
-@cases("answers, expected", CHOICES)
+@for_rows("answers, expected", CHOICES)
 def test_the_terminals_answers_decide_which_graphics_protocol_is_used(
     answers: str, expected: Graphics | None
 ) -> None:
@@ -163,12 +163,7 @@ def test_sixel_is_not_used_if_the_cells_size_is_unknown() -> None:
     assert choose_graphics(_facts("\x1b[?63;4c"), AUTO, None) is None
 
 
-@pytest.mark.parametrize(
-    "answers",
-    [XTERM, KITTY + KITTY_YES, KITTY + KITTY_ERROR, TMUX],
-    ids=["xterm", "kitty", "kitty's error", "tmux"],
-)
-@pytest.mark.parametrize("size", [1, 2, 7, 1000])
+@for_each(answers=[XTERM, KITTY + KITTY_YES, KITTY + KITTY_ERROR, TMUX], size=[1, 2, 7, 1000])
 def test_answers_of_the_terminal_are_never_taken_for_keys(answers: str, size: int) -> None:
     text = f"a{answers}b"
     found = _messages(*(text[at : at + size] for at in range(0, len(text), size)))

@@ -6,6 +6,7 @@ import pytest
 from rich.style import Style
 from textual.content import Content
 
+from tests.cases import for_each
 from tuisim.terminal.text_runs import cut, cut_line, escape_markup
 
 PLAIN, BOLD = Style(), Style(bold=True)
@@ -35,8 +36,8 @@ def test_a_line_of_several_runs_is_cut_with_an_ellipsis(texts: list[str], shown:
     assert [text for text, _ in cut_line(line, 6)] == shown
 
 
-@pytest.mark.parametrize(
-    "text", ["a[b]", "[bold]x[/]", "[ ]", "\\[a]", "[@click=app.quit]", '["=[(\\', "@=\\", "[/a"]
+@for_each(
+    text=["a[b]", "[bold]x[/]", "[ ]", "\\[a]", "[@click=app.quit]", '["=[(\\', "@=\\", "[/a"]
 )
 def test_escaped_text_is_shown_by_markup_as_it_is(text: str) -> None:
     assert Content.from_markup(escape_markup(text)).plain == text

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.cases import cases
+from tests.cases import for_rows
 from tuisim.web.gate import Gate, create_token
 
 HERE = "127.0.0.1:8000"
@@ -76,7 +76,7 @@ REQUESTS: dict[str, tuple[str, str, str, str | None, bool, bool]] = {
 }
 
 
-@cases("listens_on, path, host, origin, from_a_page, admitted", REQUESTS)
+@for_rows("listens_on, path, host, origin, from_a_page, admitted", REQUESTS)
 def test_only_the_address_and_its_own_pages_are_admitted(
     listens_on: str, path: str, host: str, origin: str | None, from_a_page: bool, admitted: bool
 ) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.cases import cases
+from tests.cases import cases, for_rows
 from tuisim.web.visit import Activity, is_done_by_a_person, is_use
 
 INPUT = {
@@ -25,7 +25,7 @@ INPUT = {
 }
 
 
-@cases("text, by_a_person", INPUT)
+@for_rows("text, by_a_person", INPUT)
 def test_automatic_answers_of_the_terminal_do_not_count_as_user_activity(
     text: str, by_a_person: bool
 ) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from tests.app.app_help import LOGS, notices, open_lab, screen_text, until
+from tests.cases import for_each
 from tuisim.app.action import Action, fit_actions
 from tuisim.app.actions.keys import ACTIONS, list_working
 from tuisim.app.analyser.actions.keys import ACTIONS as ANALYSER_ACTIONS
@@ -132,8 +133,7 @@ def test_in_the_past_the_footer_begins_with_the_ways_out() -> None:
     assert [action.id for action in shown[:2]] == ["now", "branch"]
 
 
-@pytest.mark.parametrize("state", RunPhase)
-@pytest.mark.parametrize("looks_back", [False, True])
+@for_each(state=RunPhase, looks_back=[False, True])
 def test_keys_move_the_robot_unless_a_program_drives_it(state: RunPhase, looks_back: bool) -> None:
     now = Situation(state, has_program=True, has_run=True, looks_back=looks_back)
     drives = state in (RunPhase.STARTING, RunPhase.RUNNING) and not looks_back

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import pytest
-
+from tests.cases import for_each
 from tests.running import Run
 from tuisim.app.dialogs.new_program import READINGS, Skeleton, build_program_text
 from tuisim.programs.program_file import parse_program
 
 
-@pytest.mark.parametrize("skeleton", Skeleton)
-@pytest.mark.parametrize("sensor", READINGS)
+@for_each(skeleton=Skeleton, sensor=READINGS)
 def test_each_new_program_text_compiles_and_names_its_mat(sensor: str, skeleton: Skeleton) -> None:
     source = parse_program(build_program_text("my mats/a b.png", sensor, skeleton), "new.py")
     compile(source.program.text, "new.py", "exec")

@@ -6,6 +6,7 @@ import pytest
 from textual.widgets import Input
 
 from tests.app.app_help import open_lab, until, until_shown
+from tests.cases import for_rows
 from tuisim.app.actions.keys import ACTIONS
 from tuisim.app.analyser.actions.keys import ACTIONS as ANALYSER_ACTIONS
 from tuisim.app.dialogs.palette import (
@@ -21,7 +22,7 @@ ENTRIES = [
 ]
 
 
-@pytest.mark.parametrize(
+@for_rows(
     "typed, first",
     [
         ("chart", "panel-chart"),

@@ -23,7 +23,7 @@ from tests.app.app_help import (
     until_shown,
     until_state,
 )
-from tests.cases import cases
+from tests.cases import cases, for_rows
 from tests.conftest import Command
 from tests.running import PATIENCE_S
 from tuisim.app.app import AppSettings
@@ -258,7 +258,7 @@ def test_the_list_of_runs_does_not_repeat_the_end_as_a_note(
     assert run_line(info(1, **facts), columns).plain.partition("0.00       ")[2] == end
 
 
-@pytest.mark.parametrize(
+@for_rows(
     "search, numbers",
     [
         ("", [3, 2, 1]),

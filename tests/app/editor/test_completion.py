@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import for_rows
 from tuisim.app.editor.completion import (
     Candidate,
     Signature,
@@ -200,7 +201,7 @@ def test_find_signature_gives_the_called_function_and_its_current_parameter(
     assert find_signature(text, "prog.py", *place(text)) == found
 
 
-@pytest.mark.parametrize(
+@for_rows(
     "line, column, word",
     [
         ("tank", 4, "tank"),
@@ -225,7 +226,7 @@ def test_find_word_gives_the_name_before_the_cursor(
     assert find_word(line, column) == word
 
 
-@pytest.mark.parametrize(
+@for_rows(
     "lines, is_in",
     [
         (["f("], True),

@@ -6,11 +6,12 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import for_rows
 from tuisim.app.editor.syntax import Colouring, find_spans
 from tuisim.programs.program_file import list_programs
 
 
-@pytest.mark.parametrize(
+@for_rows(
     "line, before, parts, after",
     [
         ("while x:  # go", "", [("while", "keyword"), ("# go", "comment")], ""),
@@ -28,18 +29,6 @@ from tuisim.programs.program_file import list_programs
         ('"""a""" """b', "", [('"""a"""', "string"), ('"""b', "string")], '"""'),
         ("x = 'open", "", [("'open", "string")], ""),
         ("", '"""', [], '"""'),
-    ],
-    ids=[
-        "keyword",
-        "def",
-        "numbers",
-        "strings",
-        "opens",
-        "closes",
-        "other quotes",
-        "twice",
-        "unclosed",
-        "empty",
     ],
 )
 def test_each_part_of_a_line_has_its_kind_and_open_strings_go_on(

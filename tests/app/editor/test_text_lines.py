@@ -6,11 +6,12 @@ from collections.abc import Callable
 
 import pytest
 
+from tests.cases import for_rows
 from tuisim.app.editor import text_lines
 from tuisim.app.editor.text_lines import MAX_COMPARED, LineMap
 
 
-@pytest.mark.parametrize(
+@for_rows(
     "run, shown, to_shown",
     [
         ("abc", "abc", [1, 2, 3]),
@@ -21,16 +22,6 @@ from tuisim.app.editor.text_lines import MAX_COMPARED, LineMap
         ("aaa", "aaaa", [1, 2, 3]),
         ("abc", "", [0, 0, 0]),
         ("", "abc", []),
-    ],
-    ids=[
-        "same",
-        "one before",
-        "one changed",
-        "two changed",
-        "out and in",
-        "alike",
-        "all gone",
-        "all new",
     ],
 )
 def test_each_line_of_the_running_text_is_found_in_the_edited_text(
@@ -56,7 +47,7 @@ def test_lines_of_a_long_rewritten_text_are_matched_only_at_its_ends() -> None:
     assert lines.find_shown_line(5) == 0
 
 
-@pytest.mark.parametrize(
+@for_rows(
     "line, indent",
     [
         ("while x:", "    "),

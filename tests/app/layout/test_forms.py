@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.cases import for_each
 from tuisim.app.layout.forms import build_below, build_board, build_wide, count_tight_rows
 from tuisim.app.layout.tree import (
     Axis,
@@ -45,8 +46,7 @@ def test_panels_without_room_for_a_board_are_laid_out_with_a_side_column(
     assert build_board(panels, 100, 29) == build_wide(panels, 100, 29)
 
 
-@pytest.mark.parametrize("panel", ["noise", "positioning", "debug"])
-@pytest.mark.parametrize("size", [(80, 23), (100, 29), (120, 39)], ids=str)
+@for_each(panel=["noise", "positioning", "debug"], size=[(80, 23), (100, 29), (120, 39)])
 def test_a_lesson_keeps_its_column_beside_a_panel_that_it_asks_for(
     panel: str, size: tuple[int, int]
 ) -> None:

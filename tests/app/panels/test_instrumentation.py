@@ -9,7 +9,7 @@ import pytest
 
 from tests.app.app_help import program
 from tests.app.panel_help import SPEC, PanelApp, moment, screen_text
-from tests.cases import cases
+from tests.cases import cases, for_each, for_rows
 from tuisim.app.panels.instrumentation import Instrumentation, build_lines, build_subtitle
 from tuisim.app.panels.instrumentation_lines import (
     LightSeen,
@@ -57,7 +57,7 @@ def text(now: Snapshot, width: int, height: int) -> list[str]:
     return ["".join(part for part, _ in line) for line in build_lines(now, width, height)]
 
 
-@pytest.mark.parametrize(
+@for_rows(
     "heading_deg, shown",
     [
         (-399.3, "-39.3°"),
@@ -335,7 +335,7 @@ def test_in_few_lines_the_readings_stand_side_by_side(width: int, height: int, s
     assert set(shown.split()) <= words
 
 
-@pytest.mark.parametrize("height", range(1, 14))
+@for_each(height=range(1, 14))
 def test_the_frame_or_a_line_shows_the_state_at_every_height(height: int) -> None:
     ended = moment(state=RunPhase.ENDED, end=End.FINISHED)
     assert ended.turning

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import pytest
 from textual.app import App, ComposeResult
 from textual.widget import Widget
 
 from tests.app.app_help import until
+from tests.cases import for_rows
 from tuisim.app.panels.output import KEPT_LINES, MAX_LINE_CHARS, Log, split_row
 from tuisim.engine.runs.records import OutputRow, Stream
 
@@ -29,7 +29,7 @@ def lines(app: App[None]) -> list[str]:
     return ["".join(segment.text for segment in strip).rstrip() for strip in strips]
 
 
-@pytest.mark.parametrize(
+@for_rows(
     "text, stream, width, expected",
     [
         ("", Stream.STDOUT, 10, [""]),
@@ -50,21 +50,6 @@ def lines(app: App[None]) -> list[str]:
         ("42", Stream.INPUT, 20, ["> 42"]),
         ("a\tb\x1b[31m", Stream.STDERR, 20, ["a   b·[31m"]),
         ("漢字漢字", Stream.STDOUT, 5, ["漢字", "漢字"]),
-    ],
-    ids=[
-        "empty",
-        "fits",
-        "at a blank",
-        "cut",
-        "at a separator",
-        "whole word",
-        "dash",
-        "at a sign",
-        "speech",
-        "sound",
-        "answer",
-        "controls",
-        "wide",
     ],
 )
 def test_each_printed_row_is_wrapped_to_the_width_of_the_panel(

@@ -15,6 +15,7 @@ from textual.pilot import Pilot
 
 from tests.app.app_help import LOGS, open_lab, until, until_state
 from tests.app.panel_help import PanelApp, moment, white_mat
+from tests.cases import for_rows
 from tuisim.app.layout.tree import TIME_BAR_ROWS
 from tuisim.app.panels.world import TURN_STEP_DEG, World, WorldView
 from tuisim.app.render.world_text import build_legend
@@ -75,7 +76,7 @@ async def test_the_world_keeps_its_size_when_a_run_starts() -> None:
 _ASTRAY = Pose(-4000.0, 500.0, 0.0)
 
 
-@pytest.mark.parametrize(
+@for_rows(
     "now_pose, earlier_pose, width, words",
     [
         (None, None, 70, ""),

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import ast
 
-import pytest
-
-from tests.cases import cases
+from tests.cases import for_each, for_rows
 from tuisim.app.render.code_rows import split_rows
 from tuisim.tasks.lessons.catalogue import find_shipped_paths
 from tuisim.tasks.lessons.files import load_lesson
@@ -48,12 +46,12 @@ PROGRAMS = {
 }
 
 
-@cases("program, rows", PROGRAMS)
+@for_rows("program, rows", PROGRAMS)
 def test_long_lines_are_broken_between_words(program: str, rows: list[str]) -> None:
     assert list(split_rows(program, 30)) == rows
 
 
-@pytest.mark.parametrize("name", ANSWERS)
+@for_each(name=ANSWERS)
 def test_rows_of_a_model_answer_are_the_same_program(name: str) -> None:
     for width in (38, 43, 56):
         rows = list(split_rows(ANSWERS[name], width))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.cases import for_each
 from tuisim.app.render.debug import DebugView, debug_lines
 from tuisim.app.snapshot import RunPhase
 from tuisim.engine.protocol import FrameState, Inspected, Paused, PauseReason, Variable
@@ -13,8 +14,7 @@ def text(view: DebugView, width: int) -> list[str]:
     return ["".join(part for part, _ in line) for line in debug_lines(view, width)]
 
 
-@pytest.mark.parametrize("width", [26, 38])
-@pytest.mark.parametrize("state", list(RunPhase))
+@for_each(width=[26, 38], state=list(RunPhase))
 def test_the_debug_panel_names_all_its_keys_also_when_narrow(state: RunPhase, width: int) -> None:
     narrow = text(DebugView(state), width)
     wide = text(DebugView(state), 80)

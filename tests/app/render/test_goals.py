@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import pytest
 
+from tests.cases import for_each
 from tuisim.app.render.goals import GoalsView, draw_goals
 from tuisim.tasks.goals.judgement import Change, GoalState, Judgement
 from tuisim.tasks.goals.spec import AllOf, FinishCondition, Goal, UseCondition
@@ -103,8 +104,7 @@ def test_rows_of_the_list_of_goals_do_not_move_when_goals_are_met_or_missed() ->
     assert after.rows == before.rows == (None, None, 0, 1, 2, 2, 2)
 
 
-@pytest.mark.parametrize("height", [6, 9, 13, 24])
-@pytest.mark.parametrize("chosen", [0, 11, 19])
+@for_each(height=[6, 9, 13, 24], chosen=[0, 11, 19])
 def test_a_long_list_shows_the_chosen_goal_and_its_detail(height: int, chosen: int) -> None:
     goals = tuple(replace(MISSED.goal, name=f"goal {number}") for number in range(20))
     view = GoalsView("A task", goals, tuple(replace(MISSED, goal=goal) for goal in goals))

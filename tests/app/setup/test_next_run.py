@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cases import cases
+from tests.cases import cases, for_rows
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.fields import find
 from tuisim.app.setup.next_run import NextRun, build_plan, edit_robot, plan_spec
@@ -241,11 +241,7 @@ RIGHT: list[tuple[str, str, Callable[[NextRun], object], object]] = [
 ]
 
 
-@pytest.mark.parametrize(
-    "field, entered, look, expected",
-    RIGHT,
-    ids=[f"{field} {entered}" for field, entered, _, _ in RIGHT],
-)
+@for_rows("field, entered, look, expected", RIGHT)
 def test_a_right_value_in_the_settings_form_changes_the_plan(
     field: str, entered: str, look: Callable[[NextRun], object], expected: object
 ) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 
 import pytest
 
+from tests.cases import for_each
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.next_run import NextRun
 from tuisim.engine.core.geometry import Pose
@@ -81,7 +82,7 @@ WAYS: Mapping[str, tuple[list[Step], tuple[list[str], str, str]]] = {
 }
 
 
-@pytest.mark.parametrize("way", WAYS)
+@for_each(way=WAYS)
 def test_robot_and_profile_follow_the_program_unless_somebody_chose_them(way: str) -> None:
     steps, expected = WAYS[way]
     spec = done(steps).spec

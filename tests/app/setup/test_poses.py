@@ -15,7 +15,7 @@ from tests.app.app_help import (
     until,
     until_shown,
 )
-from tests.cases import for_each
+from tests.cases import for_each, for_rows
 from tuisim.app.setup.next_run import build_plan
 from tuisim.app.setup.poses import (
     choose_random_pose,
@@ -34,7 +34,7 @@ SPEC = build_plan(Settings()).spec
 POSTS = tuple(Obstacle(x, y, 150, 150) for x in range(200, 2300, 500) for y in (150, 500, 850))
 
 
-@pytest.mark.parametrize(
+@for_rows(
     "pose, obstacles, solid, fit",
     [
         (Pose(50, 500, 0), (), False, False),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.cases import cases
+from tests.cases import for_rows
 from tuisim.commands.system import doctor
 from tuisim.commands.system.doctor import Finding, FindingState, prevents_use
 from tuisim.terminal.picture_options import CellSet
@@ -88,7 +88,7 @@ JUDGED: dict[str, tuple[Finding, FindingState, str]] = {
 }
 
 
-@cases("finding, state, advice", JUDGED)
+@for_rows("finding, state, advice", JUDGED)
 def test_each_finding_of_doctor_that_is_not_ok_has_advice(
     finding: Finding, state: FindingState, advice: str
 ) -> None:

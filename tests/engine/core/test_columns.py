@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import for_rows
 from tests.tasks.goals.recorded import goals_of
 from tuisim.analysis.events import find_events, parse_events
 from tuisim.analysis.model import AnalysisModel
@@ -138,7 +139,7 @@ def test_log_commands_understand_former_column_names(
     assert '"variable": "left_red_pc"' in capsys.readouterr().out
 
 
-@pytest.mark.parametrize(
+@for_rows(
     "text, name",
     [
         ("left.red%", "left_red_pc"),

@@ -10,6 +10,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
+from tests.cases import for_rows
 from tuisim.analysis.events import FORM, Threshold, parse_events, parse_threshold
 from tuisim.app.timeline import find, find_begins
 from tuisim.base.errors import ConfigError, LogError
@@ -128,7 +129,7 @@ RUN_CONDITIONS = {
 }
 
 
-@pytest.mark.parametrize("text, condition", RUN_CONDITIONS.items(), ids=RUN_CONDITIONS)
+@for_rows("text, condition", RUN_CONDITIONS.items())
 def test_parse_run_condition_reads_each_form_of_condition(
     text: str, condition: ValueCondition | None
 ) -> None:
@@ -147,7 +148,7 @@ EVENTS = {
 }
 
 
-@pytest.mark.parametrize("text, rising", EVENTS.items(), ids=EVENTS)
+@for_rows("text, rising", EVENTS.items())
 def test_an_events_comparison_sets_whether_it_rises_or_falls(
     text: str, rising: tuple[bool, ...] | None
 ) -> None:

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.cases import for_each
 from tests.engine.core.memory_sink import MemorySink
 from tests.engine.core.motors import commanded
 from tuisim.engine.core.drive import (
@@ -72,9 +73,11 @@ def new_records() -> Records:
     return Records(buffer, offsets, range(1, TICKS + 1), 0, 0, 0, TICK_HZ)
 
 
-@pytest.mark.parametrize("turns_deg", [(-3.0, 5.0), (5.0, -3.0), (2.0, 6.0), (4.0, 4.0)], ids=str)
-@pytest.mark.parametrize("early", [0.0, 0.5])
-@pytest.mark.parametrize("kind", [BrickDrive, BrowserDrive])
+@for_each(
+    turns_deg=[(-3.0, 5.0), (5.0, -3.0), (2.0, 6.0), (4.0, 4.0)],
+    early=[0.0, 0.5],
+    kind=[BrickDrive, BrowserDrive],
+)
 def test_driving_many_ticks_at_once_equals_driving_them_one_by_one(
     kind: Callable[[RobotSpec, Pose, float], Drive], early: float, turns_deg: tuple[float, float]
 ) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from tests.cases import cases
+from tests.cases import for_rows
 from tests.engine.core.memory_sink import MemorySink
 from tests.engine.core.motors import commanded
 from tuisim.base.errors import ConfigError
@@ -76,7 +76,7 @@ MISTAKES: dict[str, Callable[[], Any]] = {
 }
 
 
-@cases("make", MISTAKES)
+@for_rows("make", MISTAKES)
 def test_impossible_parts_of_a_robot_are_refused(make: Callable[[], Any]) -> None:
     with pytest.raises(ConfigError):
         make()

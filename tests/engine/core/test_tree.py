@@ -14,6 +14,7 @@ from venv import EnvBuilder
 
 import pytest
 
+from tests.cases import for_each
 from tests.conftest import ROOT
 from tests.running import PATIENCE_S
 from tuisim.base.errors import ConfigError, RobotError
@@ -111,10 +112,9 @@ def test_a_run_dumped_to_json_loads_as_the_same_run() -> None:
     assert plain["robot"]["ultrasonic"] is None
 
 
-@pytest.mark.parametrize("damage", ["x", [], None, True])
-@pytest.mark.parametrize(
-    "path",
-    [
+@for_each(
+    damage=["x", [], None, True],
+    path=[
         "",
         "robot",
         "world",

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 
+from tests.cases import for_rows
 from tuisim.base.errors import ConfigError
 from tuisim.engine.core.drift_spec import DriftSpec
 from tuisim.engine.core.values import (
@@ -43,7 +44,7 @@ KINDS: dict[str, Value] = {
 TYPICAL = DriftSpec(0.5, 1.0, 1.0, 1.0, 3.0, 0.05, 2.0, 14.0, 100.0, 10.0, 5.0)
 
 
-@pytest.mark.parametrize(
+@for_rows(
     "kind, data, found",
     [
         ("flag", True, True),
@@ -68,7 +69,7 @@ def test_parse_data_reads_each_kind_of_value_from_a_file(
     assert (value, type(value)) == (found, type(found))
 
 
-@pytest.mark.parametrize(
+@for_rows(
     "kind, data, said",
     [
         ("flag", 1, "must be true or false, got 1"),
@@ -107,7 +108,7 @@ def test_a_wrong_value_in_a_list_is_named_by_its_place() -> None:
         assert caught.value.part == "[2]"
 
 
-@pytest.mark.parametrize(
+@for_rows(
     "kind, text, found, again",
     [
         ("flag", "on", True, "on"),
@@ -138,7 +139,7 @@ def test_each_kind_of_value_is_read_from_text_and_formatted_back(
     assert parse(KINDS[kind], again, "-v") == value
 
 
-@pytest.mark.parametrize(
+@for_rows(
     "kind, text, said",
     [
         ("flag", "yes", "-v: no such value 'yes' (one of on, off)"),

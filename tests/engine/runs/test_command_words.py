@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import nan
 
-from tests.cases import cases
+from tests.cases import for_rows
 from tuisim.engine.core.commands.calls import MAX_VALUES, Call
 from tuisim.engine.core.commands.robot import encode_parts
 from tuisim.engine.core.commands.table import CALLS
@@ -42,7 +42,7 @@ WORDS = {
 }
 
 
-@cases("call, values, text", WORDS)
+@for_rows("call, values, text", WORDS)
 def test_each_recorded_command_is_described_in_words(
     call: Call, values: tuple[float, ...], text: str
 ) -> None:

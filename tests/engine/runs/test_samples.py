@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.cases import cases
+from tests.cases import cases, for_rows
 from tuisim.engine.core.conditions import ValueCondition, ValueSource
 from tuisim.engine.runs.records import OutputRow, Stream
 from tuisim.engine.runs.samples import (
@@ -58,14 +58,14 @@ TEXTS = {
 }
 
 
-@cases("text, expected", SAMPLES)
+@for_rows("text, expected", SAMPLES)
 def test_a_printed_name_and_number_is_read_as_a_sample(
     text: str, expected: tuple[str, float, float | None]
 ) -> None:
     assert parse_sample(text) == expected
 
 
-@cases("text", TEXTS)
+@for_rows("text", TEXTS)
 def test_printed_text_without_name_and_number_is_no_sample(text: str) -> None:
     assert parse_sample(text) is None
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.cases import for_each
 from tuisim.engine.shim.tones import Tone, parse_beep
 
 
@@ -23,9 +24,8 @@ def test_options_of_the_beep_command_are_read_as_tones(words: str, tones: list[T
     assert parse_beep(words.split()) == tones
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
+@for_each(
+    words=[
         "-f",
         "-f x",
         "-f 20001",
@@ -37,7 +37,7 @@ def test_options_of_the_beep_command_are_read_as_tones(words: str, tones: list[T
         "-r -1",
         "-x",
         "loud",
-    ],
+    ]
 )
 def test_the_beep_command_refuses_wrong_options(words: str) -> None:
     with pytest.raises(ValueError):

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tests.cases import cases
+from tests.cases import for_rows
 from tuisim.engine.core.css_colors import Rgb
 from tuisim.pictures.charts import axes
 from tuisim.pictures.charts.canvas import Curve
@@ -54,7 +54,7 @@ DRAWN = {
 }
 
 
-@cases("plot, rgb, expected", DRAWN)
+@for_rows("plot, rgb, expected", DRAWN)
 def test_each_part_of_a_pixel_chart_is_in_its_cells(
     plot: Plot, rgb: Rgb, expected: set[tuple[int, int]]
 ) -> None:

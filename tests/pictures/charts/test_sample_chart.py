@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.cases import for_each
 from tuisim.engine.runs.samples import Sample
 from tuisim.pictures.charts.axes import Limits
 from tuisim.pictures.charts.layout import Stroke
@@ -25,8 +26,9 @@ def test_a_sample_chart_reaches_from_the_first_sample_to_the_last(
     assert build_sample_chart(samples, 100, (0.0, 9.0)).x_limits == (0.0, 9.0)
 
 
-@pytest.mark.parametrize("limits", [(2.5, 7.5), (3.2, 3.4), (-2.0, 0.5), (9.5, 12.0), (20.0, 30.0)])
-@pytest.mark.parametrize("samples", [1, 10, 1000])
+@for_each(
+    limits=[(2.5, 7.5), (3.2, 3.4), (-2.0, 0.5), (9.5, 12.0), (20.0, 30.0)], samples=[1, 10, 1000]
+)
 def test_the_line_of_a_sample_chart_stays_between_its_axes(limits: Limits, samples: int) -> None:
     times_s = np.linspace(0.0, 10.0, samples)
     chart = build_sample_chart(

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from tests.cases import cases
+from tests.cases import cases, for_each, for_rows
 from tuisim.pictures.charts import axes
 from tuisim.pictures.charts.canvas import TextRun, build_style, draw_canvas
 from tuisim.pictures.charts.layout import Span
@@ -88,7 +88,7 @@ def test_a_chart_without_a_ticked_trace_says_so() -> None:
     assert ["Nothing logged yet" in words for words in said] == [False, True]
 
 
-@pytest.mark.parametrize(
+@for_rows(
     "name, values, state, lowest",
     [
         ("Colour", [60.0, 98.8], ChartState(), "0"),
@@ -99,16 +99,6 @@ def test_a_chart_without_a_ticked_trace_says_so() -> None:
         ("Light", [600.0, 980.0], ChartState(), "600"),
         ("Distance", [60.0, 98.8], ChartState(), "60"),
         ("Light_slope", [-20.0, 40.0], ChartState(), "-20"),
-    ],
-    ids=[
-        "percent",
-        "level",
-        "telemetry",
-        "column",
-        "zoomed",
-        "out of range",
-        "other reading",
-        "below zero",
     ],
 )
 def test_the_axis_of_readings_with_a_known_range_begins_at_zero(
@@ -121,8 +111,7 @@ def test_the_axis_of_readings_with_a_known_range_begins_at_zero(
     assert [row.split("┤")[0].strip() for row in rows if "┤" in row][-1] == lowest
 
 
-@pytest.mark.parametrize("end_s", [0.7, 5.41, 61.3, 723.0])
-@pytest.mark.parametrize("grows", [False, True], ids=["over", "live"])
+@for_each(end_s=[0.7, 5.41, 61.3, 723.0], grows=[False, True])
 def test_the_horizontal_axis_ends_at_the_data(end_s: float, grows: bool) -> None:
     made = Traces()
     made.append("Colour", [0.0, end_s], [1.0, 2.0])

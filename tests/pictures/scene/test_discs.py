@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.cases import cases
+from tests.cases import cases, for_each
 from tuisim.app.render.brick import shrink_pixels
 from tuisim.engine.core.sensors.color import ColorReading, LightRead
 from tuisim.pictures.scene.discs import RIM_RGB, RINGS, DiscFace, draw_disc
@@ -57,8 +57,7 @@ def test_a_disc_of_one_pixel_is_drawn() -> None:
     assert draw_disc(bytes([255]) * 1200, 1, 1, GROUND, RIM_RGB).shape == (1, 1, 3)
 
 
-@pytest.mark.parametrize("paper", [(255, 255, 255), (16, 21, 28)], ids=["paper", "screen"])
-@pytest.mark.parametrize("grey", [255, 220, 211, 128, 16, 0])
+@for_each(paper=[(255, 255, 255), (16, 21, 28)], grey=[255, 220, 211, 128, 16, 0])
 def test_the_outline_of_a_disc_is_seen_whatever_its_colour(
     paper: tuple[int, int, int], grey: int
 ) -> None:

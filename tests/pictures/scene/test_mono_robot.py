@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
 from tests.cases import cases, for_each
 from tuisim.app.render.world_text import draw_pointer
@@ -32,9 +31,9 @@ def test_the_robot_in_signs_has_a_sign_of_its_own(heading: int) -> None:
     assert "&" not in SIGNS
 
 
-@pytest.mark.parametrize("grey", [False, True], ids=["colours", "greys"])
-@pytest.mark.parametrize(
-    "ground", [(255, 0, 0), (255, 255, 255), (0, 0, 0), (128, 128, 128), (200, 30, 30)], ids=str
+@for_each(
+    grey=[False, True],
+    ground=[(255, 0, 0), (255, 255, 255), (0, 0, 0), (128, 128, 128), (200, 30, 30)],
 )
 def test_the_pens_colour_is_drawn_so_that_it_shows_on_any_ground(
     ground: tuple[int, int, int], grey: bool

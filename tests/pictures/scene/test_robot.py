@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image, ImageDraw
 
+from tests.cases import for_each
 from tests.pictures.scene.scenes import MIDDLE, ROBOT, WHITE, pixel, spec_of
 from tuisim.engine.core.geometry import Pose, world_point
 from tuisim.engine.core.outline import build_outline
@@ -88,8 +89,7 @@ def test_the_robot_is_drawn_as_large_as_what_collides(heading: int) -> None:
     assert [cols.max() + 1, rows.max() + 1] == pytest.approx(corners.max(axis=0), abs=1)
 
 
-@pytest.mark.parametrize("cell", [CellPoints(1, 2), CellPoints(2, 2), CellPoints(2, 4)])
-@pytest.mark.parametrize("heading", range(0, 360, 19))
+@for_each(cell=[CellPoints(1, 2), CellPoints(2, 2), CellPoints(2, 4)], heading=range(0, 360, 19))
 def test_the_marker_of_a_small_robot_points_where_the_robot_heads(
     cell: CellPoints, heading: int
 ) -> None:
@@ -126,8 +126,7 @@ def test_the_nose_of_a_robot_of_few_pixels_is_in_front_of_all_else(
         assert marker[front].mean() >= 0.5, heading
 
 
-@pytest.mark.parametrize("cols", [58, 118, 198])
-@pytest.mark.parametrize("heading", range(0, 360, 19))
+@for_each(cols=[58, 118, 198], heading=range(0, 360, 19))
 def test_the_outline_of_the_robot_now_has_no_gap(cols: int, heading: int) -> None:
     view = Viewport.fit_field(2 * cols, cols, CellPoints(2, 2))
     picture = np.zeros((view.height_px, view.width_px, 3), np.uint8)

@@ -41,8 +41,7 @@ def test_the_whole_field_is_in_view_again_once_the_robot_is_back_on_it() -> None
     assert follow((1181, 571), (-300, 500), (150, 500)) == WHOLE
 
 
-@pytest.mark.parametrize("zoom", [1, 2, 4])
-@pytest.mark.parametrize("place", [(5362, 571), (-3000, 100), (1181, 4143), (900, -3000)])
+@for_each(zoom=[1, 2, 4], place=[(5362, 571), (-3000, 100), (1181, 4143), (900, -3000)])
 def test_the_view_follows_a_robot_off_the_field(place: tuple[float, float], zoom: int) -> None:
     view = follow((1181, 571), place, zoom=zoom)
     assert is_seen(view, *place)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import ast
 
-import pytest
-
+from tests.cases import for_each, for_rows
 from tuisim.programs.robot.brick_syntax import find_refused_lines
 from tuisim.programs.robot.source import Module
 
@@ -16,7 +15,7 @@ def found(text: str) -> list[tuple[int, str]]:
     ]
 
 
-@pytest.mark.parametrize(
+@for_rows(
     "text, what",
     [
         ("print(f'{1:{2}d}')", "f-string"),
@@ -43,9 +42,8 @@ def test_a_line_that_the_bricks_python_would_refuse_is_found(text: str, what: st
     assert {one for _, one in found(text)} == {what}
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
+@for_each(
+    text=[
         "a, *b = c",
         "[a, *b] = c",
         "print('{}'.format(1), '%d' % 2, b'' + rb'')",
@@ -57,7 +55,7 @@ def test_a_line_that_the_bricks_python_would_refuse_is_found(text: str, what: st
         "def open(): pass\nopen()\ngripper.open()",
         "async def f():\n    async with a: await b",
         "def f():\n    nonlocal_ = yield from g()",
-    ],
+    ]
 )
 def test_syntax_that_the_bricks_python_takes_is_not_refused(text: str) -> None:
     assert found(text) == []

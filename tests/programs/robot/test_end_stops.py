@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import pytest
 
+from tests.cases import for_each
 from tests.programs.robot.reading import PYBRICKS_HEAD, built
 
 _HOME = "arm.run_until_stalled(200, Stop.COAST, 50)\n"
@@ -44,7 +45,7 @@ RANGES: Mapping[str, tuple[str, tuple[float, float]]] = {
 }
 
 
-@pytest.mark.parametrize("case", RANGES)
+@for_each(case=RANGES)
 def test_an_arms_end_stop_lies_beyond_every_target_of_the_program(case: str) -> None:
     text, expected = RANGES[case]
     found = built(f"arm = Motor(Port.A)\n{text}", PYBRICKS_HEAD)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import pytest
-
+from tests.cases import for_each
 from tests.programs.robot.reading import changed
 
 PORTS: Mapping[str, tuple[str, str]] = {
@@ -107,7 +106,7 @@ PORTS: Mapping[str, tuple[str, str]] = {
 }
 
 
-@pytest.mark.parametrize("case", PORTS)
+@for_each(case=PORTS)
 def test_ports_are_found_however_they_are_written(case: str) -> None:
     text, expected = PORTS[case]
     assert changed(text) == expected

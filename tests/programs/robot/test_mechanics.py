@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import pytest
-
+from tests.cases import for_each, for_rows
 from tests.programs.robot.reading import USUAL, built, changed
 
 
-@pytest.mark.parametrize(
+@for_rows(
     "text, reversed_",
     [
         (
@@ -40,10 +39,6 @@ from tests.programs.robot.reading import USUAL, built, changed
             (True, False),
         ),
         ("m = MediumMotor(OUTPUT_A)\nm.polarity = 'inversed'", (False, False)),
-    ],
-    ids=[
-        *("both", "one", "a motor of a tank", "to and fro", "a loop over both"),
-        *("a loop over all of a tank", "a loop over one", "no wheel"),
     ],
 )
 def test_a_wheel_with_polarity_turned_is_mounted_the_other_way_round(
@@ -103,7 +98,7 @@ STOPS: Mapping[str, tuple[str, tuple[float | None, float | None]]] = {
 }
 
 
-@pytest.mark.parametrize(
+@for_rows(
     "text, reversed_",
     [
         ("def vorwaerts():\n    t.on(-40, -40)", True),
@@ -114,16 +109,6 @@ STOPS: Mapping[str, tuple[str, tuple[float | None, float | None]]] = {
         ("def move_forward_or_back():\n    t.on(-40, -40)", False),
         ("def avanzar():\n    t.on(-40, 40)", False),
         ("t.set_polarity('inversed')\ndef forward():\n    t.on(-40, -40)", False),
-    ],
-    ids=[
-        "fixed",
-        "by default",
-        "a negative way and speed",
-        "a negative way",
-        "to and fro",
-        "both directions",
-        "a turn",
-        "with polarity turned",
     ],
 )
 def test_wheels_that_turn_backwards_to_drive_forwards_are_mounted_the_other_way_round(
@@ -138,7 +123,7 @@ def test_wheels_that_turn_backwards_to_drive_forwards_are_mounted_the_other_way_
     )
 
 
-@pytest.mark.parametrize("case", STOPS)
+@for_each(case=STOPS)
 def test_a_motor_that_drives_until_it_stalls_has_end_stops(case: str) -> None:
     text, expected = STOPS[case]
     found = built(f"m = MediumMotor(OUTPUT_A)\n{text}")
@@ -164,7 +149,7 @@ TOUCH_WAITS: Mapping[str, tuple[str, str]] = {
 }
 
 
-@pytest.mark.parametrize("case", TOUCH_WAITS)
+@for_each(case=TOUCH_WAITS)
 def test_an_arm_presses_the_touch_sensor_that_the_program_waits_for(case: str) -> None:
     wait, port = TOUCH_WAITS[case]
     found = built(f"arm = MediumMotor(OUTPUT_A)\nts = TouchSensor(INPUT_1)\narm.on(-5)\n{wait}")

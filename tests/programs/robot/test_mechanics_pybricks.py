@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import pytest
 
+from tests.cases import for_each
 from tests.programs.robot.reading import PYBRICKS_HEAD, USUAL, built
 from tuisim.engine.core.spec import RobotSpec
 
@@ -100,7 +101,7 @@ STOPS: Mapping[str, tuple[str, tuple[float | None, float | None]]] = {
 }
 
 
-@pytest.mark.parametrize("case", STOPS)
+@for_each(case=STOPS)
 def test_a_motor_that_is_driven_until_it_stalls_has_an_end_stop(case: str) -> None:
     text, expected = STOPS[case]
     (motor,) = robot_of(text).extra_motors

@@ -1,7 +1,6 @@
 """The version of Pybricks that a program is for."""
 
-import pytest
-
+from tests.cases import for_each
 from tuisim.base.source import Program
 from tuisim.programs.robot.pybricks_version import find_version_4_name
 from tuisim.programs.robot.source import read_modules
@@ -29,14 +28,13 @@ OF_4 = {
 }
 
 
-@pytest.mark.parametrize("text", OF_4)
+@for_each(text=OF_4)
 def test_a_name_that_only_pybricks_4_has_is_found(text: str) -> None:
     assert find_version_4_name(read_modules(Program("p.py", text)).values()) == OF_4[text]
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
+@for_each(
+    text=[
         "from pybricks.tools import DataLog, StopWatch, print, wait",
         "from pybricks.parameters import Align, Button, Color, Direction, ImageFile, Port, Stop",
         "motor.run_angle(500, 90, then=Stop.COAST, wait=False)",
@@ -47,7 +45,7 @@ def test_a_name_that_only_pybricks_4_has_is_found(text: str) -> None:
         "class Robot:\n    def arc(self, radius):\n        pass\nRobot().arc(5)",
         "async def run_task():\n    pass\nrun_task()",
         "class Color:\n    NONE = 0\nColor.NONE",
-    ],
+    ]
 )
 def test_names_that_pybricks_2_has_are_not_taken_for_version_4(text: str) -> None:
     assert find_version_4_name(read_modules(Program("p.py", text)).values()) == ""

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from tests.cases import cases
+from tests.cases import for_rows
 from tuisim.base.source import Program
 from tuisim.engine.core.sensors.color import LightRead
 from tuisim.engine.core.spec import RobotSpec
@@ -33,7 +33,7 @@ def found(text: str, prelude: str = "none") -> dict[str, list[str]]:
     }
 
 
-@cases(
+@for_rows(
     "text, expected",
     {
         "as it is": (

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import pytest
 
+from tests.cases import for_each
 from tests.programs.robot.reading import USUAL, built, changed
 
 WHEELS: Mapping[str, tuple[str, str]] = {
@@ -69,7 +70,7 @@ WHEELS: Mapping[str, tuple[str, str]] = {
 }
 
 
-@pytest.mark.parametrize("case", WHEELS)
+@for_each(case=WHEELS)
 def test_the_motors_of_the_wheels_are_found(case: str) -> None:
     text, expected = WHEELS[case]
     assert changed(text) == expected

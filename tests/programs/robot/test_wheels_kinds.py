@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import pytest
-
+from tests.cases import for_each
 from tests.programs.robot.reading import PYBRICKS_HEAD, changed
 
 KINDS: Mapping[str, tuple[str, str]] = {
@@ -40,7 +39,7 @@ KINDS: Mapping[str, tuple[str, str]] = {
 }
 
 
-@pytest.mark.parametrize("case", KINDS)
+@for_each(case=KINDS)
 def test_the_kind_of_each_pybricks_motor_is_found(case: str) -> None:
     text, expected = KINDS[case]
     assert changed(text, PYBRICKS_HEAD) == expected

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import for_each
 from tests.programs.robot.reading import PYBRICKS_HEAD, USUAL, built
 from tuisim.base.source import Program
 from tuisim.engine.core.spec import NO_PORT, RobotSpec
@@ -106,7 +107,7 @@ def robot_of(text: str) -> RobotSpec:
     return found.choice.spec if found else USUAL
 
 
-@pytest.mark.parametrize("case", DRIVE_BASES)
+@for_each(case=DRIVE_BASES)
 def test_a_drive_base_gives_motors_and_sizes_of_the_wheels(case: str) -> None:
     text, expected = DRIVE_BASES[case]
     robot = robot_of(text)

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import pytest
 
+from tests.cases import for_each
 from tests.programs.robot.reading import built
 
 SAID_SIZES: Mapping[str, tuple[str, tuple[float, float]]] = {
@@ -54,7 +55,7 @@ SAID_SIZES: Mapping[str, tuple[str, tuple[float, float]]] = {
 }
 
 
-@pytest.mark.parametrize("case", SAID_SIZES)
+@for_each(case=SAID_SIZES)
 def test_constants_give_the_sizes_of_the_wheels(case: str) -> None:
     text, expected = SAID_SIZES[case]
     found = built(f"MoveTank(OUTPUT_A, OUTPUT_D)\n{text}")

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
-from tests.cases import cases
+from tests.cases import cases, for_rows
 from tests.conftest import Command
 from tuisim.base.errors import ConfigError
 from tuisim.tasks.goals.files import GoalsFile, find_key_line
@@ -401,7 +401,7 @@ LINES = {
 }
 
 
-@cases("text, key, line", LINES)
+@for_rows("text, key, line", LINES)
 def test_the_line_of_a_key_in_a_goal_file_is_found(text: str, key: str, line: int) -> None:
     assert find_key_line(text, key) == line
 

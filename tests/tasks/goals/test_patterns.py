@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import for_each
 from tests.tasks.goals.recorded import Run, goals_of, says, world
 from tuisim.engine.core.conditions import NUMBER
 from tuisim.engine.runs.samples import parse_sample
@@ -34,7 +35,7 @@ TEXTS = {
 }
 
 
-@pytest.mark.parametrize("pattern", TEXTS)
+@for_each(pattern=TEXTS)
 def test_patterns_find_the_same_as_the_re_module(pattern: str) -> None:
     search = build_search(pattern)
     assert [search(text) for text in TEXTS[pattern]] == [

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import pytest
 
-from tests.cases import cases
+from tests.cases import cases, for_rows
 from tuisim.tasks.goals.trial_world import TrialWorld
 from tuisim.tasks.lessons.events import (
     BreakMet,
@@ -138,7 +138,7 @@ CASES: dict[str, tuple[Check, Sequence[Event], bool]] = {
 }
 
 
-@cases("check, events, passes", CASES)
+@for_rows("check, events, passes", CASES)
 def test_a_lessons_step_passes_only_by_what_it_checks(
     check: Check, events: Sequence[Event], passes: bool
 ) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.cases import cases
+from tests.cases import for_rows
 from tuisim.tasks.goals.condition import Condition
 from tuisim.tasks.goals.judgement import Change, GoalState, Judgement
 from tuisim.tasks.goals.spec import (
@@ -48,7 +48,7 @@ SAID: dict[str, tuple[Condition, str]] = {
 }
 
 
-@cases("condition, words", SAID)
+@for_rows("condition, words", SAID)
 def test_the_sentence_about_a_run_says_how_its_goal_was_met(
     condition: Condition, words: str
 ) -> None:

@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 import pytest
 
+from tests.cases import for_each
 from tuisim.cli import COMMANDS
 from tuisim.commands.learn import find_warnings, learn
 from tuisim.engine.runs.store import RunStore
@@ -27,7 +28,7 @@ def test_a_lessons_model_answers_pass_and_its_wrong_answers_do_not(name: str) ->
     assert find_faults(LESSONS[name]) == []
 
 
-@pytest.mark.parametrize("name", LESSONS)
+@for_each(name=LESSONS)
 def test_each_built_in_lesson_has_texts_hints_and_wrong_programs(name: str) -> None:
     lesson = LESSONS[name]
     assert lesson.path.name.isascii()
@@ -41,7 +42,7 @@ def test_each_built_in_lesson_has_texts_hints_and_wrong_programs(name: str) -> N
         assert len(step.text) < 700, f"{step.name}: too long for a small terminal"
 
 
-@pytest.mark.parametrize("name", LESSONS)
+@for_each(name=LESSONS)
 def test_the_text_of_a_lessons_step_mentions_the_names_that_its_goals_need(name: str) -> None:
     lesson = LESSONS[name]
     needed = {goal.name: goal.condition for goal in LESSONS[name].goals}

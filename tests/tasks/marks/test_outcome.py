@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ev3dev2 import motor
 
-from tests.cases import cases
+from tests.cases import for_rows
 from tuisim.tasks.goals.judgement import Change, GoalState, Judgement
 from tuisim.tasks.goals.spec import AllOf, FinishCondition, Goal, ReachCondition, UseCondition
 from tuisim.tasks.marks.outcome import build_outcome
@@ -58,7 +58,7 @@ FAILURES = {
 }
 
 
-@cases("result, failure", FAILURES)
+@for_rows("result, failure", FAILURES)
 def test_each_end_of_a_marked_run_has_its_words_for_the_failure(
     result: Result, failure: str
 ) -> None:

@@ -5,8 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-import pytest
-
+from tests.cases import for_each
 from tests.tasks.goals.recorded import goals_of
 from tuisim.tasks.marks.trial import ASK, answer_lines, build_matching_line
 
@@ -25,7 +24,7 @@ PATTERNS = [
 ]
 
 
-@pytest.mark.parametrize("pattern", PATTERNS)
+@for_each(pattern=PATTERNS)
 def test_a_line_built_for_a_pattern_matches_it(pattern: str) -> None:
     line = build_matching_line(pattern)
     assert re.search(pattern, line) and "\n" not in line

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cases import cases
+from tests.cases import cases, for_each
 from tests.conftest import Command
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.sensors.color import measure_color
@@ -386,7 +386,7 @@ def test_a_batch_has_a_column_of_what_each_run_waited_for(tmp_path: Path, here: 
     assert "touch sensor on in1 was never pressed: --press in1@2" in first
 
 
-@pytest.mark.parametrize("subject", Subject)
+@for_each(subject=Subject)
 def test_each_kind_of_awaited_sensor_or_press_has_a_sentence_and_an_advice(
     subject: Subject,
 ) -> None:

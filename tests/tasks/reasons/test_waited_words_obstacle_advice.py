@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import pytest
-
+from tests.cases import for_rows
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.spec import InfraredSpec, RobotSpec, RunSpec, UltrasonicSpec, WorldSpec
@@ -18,8 +17,8 @@ ASIDE = replace(FRONT, x_mm=-40.0, angle_deg=90.0)
 INFRARED = InfraredSpec(port="in4")
 
 
-@pytest.mark.parametrize(
-    ("sensor", "pose", "limit", "options"),
+@for_rows(
+    "sensor, pose, limit, options",
     [
         (FRONT, MIDDLE, None, "-o Wall"),
         (INFRARED, MIDDLE, None, "-o Wall"),

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import pytest
 
+from tests.cases import for_rows
 from tuisim.engine.core.driver.jiffies import Jiffies, round_up
 
 MS = 1_000_000
 
 
-@pytest.mark.parametrize(
+@for_rows(
     "jiffies, fires_at",
     [(0, 1), (5, 6), (63, 64), (64, 72), (100, 104), (504, 512), (505, 512), (1000, 1024)],
 )

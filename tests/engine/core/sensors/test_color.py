@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from tests.cases import cases
+from tests.cases import cases, for_rows
 from tuisim.engine import mat_cache, mats
 from tuisim.engine.core.field import OUTSIDE_DISC_RGB, Field, build_disc_mask, count_disc_pixels
 from tuisim.engine.core.geometry import Pose
@@ -118,7 +118,7 @@ def test_the_pixels_under_a_sensor_are_rounded_as_in_the_old_simulator(
     assert color.find_box_corner(nudged, LEFT) == corner
 
 
-@cases(
+@for_rows(
     "rgb, code",
     {
         "black": ((0, 0, 0), 1),

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import pytest
-
+from tests.cases import for_rows
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.sensors.touch import pressed
 from tuisim.engine.core.spec import Obstacle, TouchSpec, WorldSpec
@@ -12,8 +11,8 @@ BOX = Obstacle(1000, 500, 100, 100)
 BUMPER = TouchSpec(x_mm=10, y_mm=50, width_mm=40)
 
 
-@pytest.mark.parametrize(
-    ("x_mm", "y_mm", "heading_deg", "walls", "is_pressed"),
+@for_rows(
+    "x_mm, y_mm, heading_deg, walls, is_pressed",
     [
         (947, 560, 0, False, False),
         (949, 560, 0, False, True),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.cases import cases
+from tests.cases import for_rows
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.sensors.ultrasonic import measure_distance_mm, measure_rays_mm
 from tuisim.engine.core.spec import Obstacle, UltrasonicSpec, WorldSpec
@@ -32,7 +32,7 @@ def test_the_ultrasonic_sensor_measures_the_distance_to_each_wall(
     assert measure_distance_mm(Pose(1000, 500, heading_deg), SENSOR, WALLS) == expected_mm
 
 
-@cases(
+@for_rows(
     "pose, world, expected_mm",
     {
         "post in front": (Pose(500, 600, 0), POST, 380),

@@ -6,6 +6,7 @@ import os
 
 import pytest
 
+from tests.cases import for_rows
 from tuisim.base.errors import HostError
 from tuisim.engine.protocol import (
     PROTOCOL_VERSION,
@@ -39,8 +40,8 @@ def test_an_unreadable_event_from_a_programs_process_is_a_host_error(line: bytes
 STARTED, SPOKE, ENDED = Started(PROTOCOL_VERSION, 7), Spoke("x", 5), Ended(End.FINISHED, 9, 10)
 
 
-@pytest.mark.parametrize(
-    ("events", "count", "says"),
+@for_rows(
+    "events, count, says",
     [
         ([STARTED, SPOKE, SPOKE, ENDED], 4, ""),
         ([ENDED], 1, ""),
@@ -54,16 +55,6 @@ STARTED, SPOKE, ENDED = Started(PROTOCOL_VERSION, 7), Spoke("x", 5), Ended(End.F
         ),
         ([Started(PROTOCOL_VERSION + 1, 7)], 0, "speaks protocol"),
         ([STARTED, Spoke("x", -(1 << 53)), SPOKE], 1, "sent an invalid message"),
-    ],
-    ids=[
-        "sound",
-        "only an end",
-        "no start",
-        "twice",
-        "after the end",
-        "not asked",
-        "other",
-        "large",
     ],
 )
 def test_events_of_a_process_out_of_order_count_as_falsified(

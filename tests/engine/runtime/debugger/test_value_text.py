@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.cases import cases
+from tests.cases import for_rows
 from tuisim.engine.runtime.debugger.value_text import (
     MAX_CHARACTERS,
     MAX_ITEMS,
@@ -56,7 +56,7 @@ TEXTS: dict[str, tuple[object, str]] = {
 }
 
 
-@cases("value, text", TEXTS)
+@for_rows("value, text", TEXTS)
 def test_each_kind_of_value_is_rendered_as_text(value: object, text: str) -> None:
     assert Renderer(1.0).render(value) == text
 

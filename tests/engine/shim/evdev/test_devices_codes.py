@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-import pytest
-
+from tests.cases import for_rows
 from tuisim.engine.shim.evdev.devices import codes_module, numbered
 
 CODES: Any = codes_module("evdev.ecodes")
 
 
-@pytest.mark.parametrize(
+@for_rows(
     "name, number",
     [
         ("EV_SYN", 0),

@@ -6,12 +6,12 @@ from typing import Any
 
 import pytest
 
-from tests.cases import cases
+from tests.cases import for_rows
 from tuisim.engine.shim.pybricks.hsv_color import Color
 from tuisim.engine.shim.pybricks.image import paint_of
 
 
-@cases(
+@for_rows(
     "color, hsv",
     {
         "usual": (Color(20), (20, 100, 100)),

@@ -13,6 +13,7 @@ from typing import Any
 
 import pytest
 
+from tests.cases import for_each
 from tests.engine.shim.pybricks.lab import Lab
 from tuisim.base.errors import NotSimulated
 from tuisim.engine.core.profile import MotorLaw
@@ -36,20 +37,22 @@ def hub() -> Any:
     return PrimeHub()
 
 
-@pytest.mark.parametrize("member", API)
-def test_a_member_cannot_be_called_by_the_names_of_its_parameters(hub: Any, member: str) -> None:
-    owner, _, name = member.rpartition(".")
-    place = (
-        getattr(hub, owner.removeprefix("hub."))
-        if owner.startswith("hub.")
-        else PARTS.get(owner) or NAMES[owner or name]
-    )
-    called = inspect.signature(getattr(place, name) if owner else place)
-    if "named" not in called.parameters:
-        assert {*API[member]} <= {*called.parameters}
+def test_each_member_can_be_called_by_the_names_of_its_parameters(hub: Any) -> None:
+    lacking = {}
+    for member, parameters in API.items():
+        owner, _, name = member.rpartition(".")
+        place = (
+            getattr(hub, owner.removeprefix("hub."))
+            if owner.startswith("hub.")
+            else PARTS.get(owner) or NAMES[owner or name]
+        )
+        called = inspect.signature(getattr(place, name) if owner else place)
+        if "named" not in called.parameters:
+            lacking[member] = {*parameters} - {*called.parameters}
+    assert {member: names for member, names in lacking.items() if names} == {}
 
 
-@pytest.mark.parametrize("name", [name for names in HUB_CLASSES.values() for name in names])
+@for_each(name=[name for names in HUB_CLASSES.values() for name in names])
 def test_creating_a_pybricks_class_that_is_not_simulated_is_refused_by_name(name: str) -> None:
     with pytest.raises(NotSimulated, match=name):
         NAMES[name]()

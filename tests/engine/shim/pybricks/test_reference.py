@@ -15,6 +15,7 @@ from typing import Any
 
 import pytest
 
+from tests.cases import for_each
 from tests.engine.shim.pybricks.lab import TICK_NS, Lab
 from tuisim.engine.core.profile import MotorLaw
 from tuisim.engine.core.servo.control import Controller
@@ -145,7 +146,7 @@ def in_units(experiment: Experiment, found: list[Any]) -> list[list[int]]:
     ]
 
 
-@pytest.mark.parametrize("key", PLANT_FREE)
+@for_each(key=PLANT_FREE)
 def test_a_moves_reference_trajectory_equals_the_firmwares(key: str) -> None:
     experiment = Experiment(key).run()
     compared = 0
@@ -182,7 +183,7 @@ def ends_ms(key: str) -> Iterator[tuple[int, int]]:
     yield from zip([at for _, at, _ in experiment.recorded["returned"]], blocking, strict=True)
 
 
-@pytest.mark.parametrize("key", RETURNING)
+@for_each(key=RETURNING)
 def test_each_move_call_returns_at_the_recorded_time(key: str) -> None:
     for recorded_ms, now_ms in ends_ms(key):
         assert 0 <= recorded_ms - now_ms <= LATEST_MS
@@ -199,7 +200,7 @@ SETTLED_FAR = {
 where the motor was measured to be."""
 
 
-@pytest.mark.parametrize("key", HELD)
+@for_each(key=HELD)
 def test_a_held_motor_ends_where_the_recorded_one_did(key: str) -> None:
     experiment = Experiment(key).run()
     now = experiment.base.state()[::2] if experiment.base else (experiment.motor.angle(),)
@@ -207,7 +208,7 @@ def test_a_held_motor_ends_where_the_recorded_one_did(key: str) -> None:
         assert abs(recorded - found) <= SETTLED_FAR.get(key, 1)
 
 
-@pytest.mark.parametrize("key", [key for key in RECORDED if RECORDED[key]["usual"]])
+@for_each(key=[key for key in RECORDED if RECORDED[key]["usual"]])
 def test_default_settings_and_limits_equal_those_of_the_firmware(key: str) -> None:
     experiment = Experiment(key)
     base = experiment.base
@@ -284,13 +285,12 @@ def test_power_drives_a_motor_as_far_as_the_recorded_one(key: str) -> None:
     )
 
 
-@pytest.mark.parametrize(
-    "key",
-    [
+@for_each(
+    key=[
         key
         for key in RECORDED
         if key.startswith(("L_run_", "M_run_")) and "stop" in str(RECORDED[key]["commands"])
-    ],
+    ]
 )
 def test_a_motor_coasts_about_as_far_as_the_recorded_one(key: str) -> None:
     experiment = Experiment(key).run()
@@ -305,7 +305,7 @@ def test_a_motor_coasts_about_as_far_as_the_recorded_one(key: str) -> None:
 OF_VERSION_4 = [key for key in RECORDED if key.startswith("v4") and RECORDED[key]["returned"]]
 
 
-@pytest.mark.parametrize("key", OF_VERSION_4)
+@for_each(key=OF_VERSION_4)
 def test_version_4_moves_within_the_bands_of_its_own_tests(key: str) -> None:
     experiment = Experiment(key, stop_deg=125.0 if "stalled" in key else None).run()
     for (_, recorded_ms, state), (_, now_ms, found) in zip(

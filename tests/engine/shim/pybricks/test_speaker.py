@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import for_each
 from tests.engine.shim.pybricks.lab import Lab
 from tuisim.engine.core.profile import MotorLaw
 from tuisim.engine.shim.pybricks.media import SoundFile
@@ -47,9 +48,7 @@ def test_a_notes_text_gives_its_frequency_length_and_pause(
     assert (tone.frequency_hz, tone.length_ms, tone.pause_ms) == expected
 
 
-@pytest.mark.parametrize(
-    "note", ["Cb4/4", "Fb4/4", "E#4/4", "B#4/4", "H4/4", "C9/4", "C4", "C4/0", "c4/4", ""]
-)
+@for_each(note=["Cb4/4", "Fb4/4", "E#4/4", "B#4/4", "H4/4", "C9/4", "C4", "C4/0", "c4/4", ""])
 def test_a_wrong_note_raises_a_value_error(note: str) -> None:
     with pytest.raises(ValueError, match="note"):
         note_of(note, 2000)

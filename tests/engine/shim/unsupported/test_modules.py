@@ -197,10 +197,9 @@ def test_no_module_is_in_two_tables() -> None:
     assert len(names) == len(set(names))
 
 
-@pytest.mark.parametrize("name", [*ON_THE_BRICK, *ELSEWHERE])
-def test_the_guide_names_each_module(name: str, root: Path) -> None:
+def test_the_guide_names_each_module(root: Path) -> None:
     page = (root / "tuisim/guide/pages/library-differences.md").read_text("utf-8")
-    assert f"`{name}`" in page
+    assert [name for name in [*ON_THE_BRICK, *ELSEWHERE] if f"`{name}`" not in page] == []
 
 
 @pytest.mark.parametrize(
