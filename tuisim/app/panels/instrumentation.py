@@ -9,6 +9,7 @@ from tuisim.app.panels.instrumentation_lines import (
     MAX_NAME_CELLS,
     VALUE,
     WARNING,
+    WORDS,
     add_states,
     build_color_cell,
     build_driver_line,
@@ -18,11 +19,10 @@ from tuisim.app.panels.instrumentation_lines import (
     build_sensor_lines,
     build_wheel_lines,
     fit_line,
-    format_label,
-    format_unit,
-    format_value,
-    format_values,
     list_seen,
+    measure_line,
+    pad,
+    style_parts,
 )
 from tuisim.app.panels.titles import build_title, name_setup
 from tuisim.app.snapshot import Snapshot
@@ -172,14 +172,11 @@ def _build_further_line(column: str, value: float, width: int) -> Line:
         value_text = f"{value:.0f}"
         unit = sign if sign == "°" else f" {sign}".rstrip()
     label = name.capitalize()
+    shown_text = value_text if what == "pressed" else f"{value_text:>6}"
     return fit_line(
         width,
-        (
-            format_label(cut(label, COLUMN - 1)),
-            format_value(value_text if what == "pressed" else f"{value_text:>6}"),
-            format_unit(unit),
-        ),
-        (format_label(cut(label, 8), 9), format_value(value_text), format_unit(unit)),
+        (pad(cut(label, COLUMN - 1)), shown_text, unit),
+        (pad(cut(label, 8), 9), value_text, unit),
     )
 
 
@@ -191,7 +188,7 @@ def _build_columns_text(now: Snapshot, width: int, height: int) -> list[Line]:
     """
     for detail, with_pose in ((2, True), (1, True), (2, False), (1, False), (0, False)):
         columns, sensing = _arrange_cells(now, height, detail)
-        widths = [max(_measure_line(cell) for cell in column) for column in columns]
+        widths = [max(measure_line(cell) for cell in column) for column in columns]
         needed = widths if with_pose else widths[:sensing]
         gap = _GAP if _measure_columns(needed, _GAP) <= width else 1
         if _measure_columns(needed, gap) <= width:
@@ -204,9 +201,9 @@ def _build_columns_text(now: Snapshot, width: int, height: int) -> list[Line]:
         for row, line in enumerate(lines):
             cell = cells[row] if row < len(cells) else []
             line += [
-                format_unit(" " * gap * bool(used)),
+                (" " * gap * bool(used), WORDS),
                 *cell,
-                format_unit(" " * (column - _measure_line(cell))),
+                (" " * (column - measure_line(cell)), WORDS),
             ]
         used += column + gap * bool(used)
     if detail < 2 and (below := max(map(len, columns))) < height:
@@ -231,11 +228,11 @@ def _add_pose(
     """
     pose: Line = []
     for place in itertools.chain.from_iterable(places):
-        pose += [format_unit(" " * (_GAP if not pose else 1)), *place]
+        pose += [(" " * (_GAP if not pose else 1), WORDS), *place]
     for row in reversed(range(len(lines))):
         readings = [cells[row] for cells in columns if row < len(cells)]
         is_single = len(readings) == 1 and row < len(columns[0])
-        if is_single and _measure_line(readings[0]) + _measure_line(pose) <= width:
+        if is_single and measure_line(readings[0]) + measure_line(pose) <= width:
             lines[row] = [*readings[0], *pose]
             return
 
@@ -248,12 +245,9 @@ def _build_color_names(now: Snapshot, width: int) -> Line:
     """Return one line with the names of the colours that the sensors see, as many as fit."""
     line: Line = []
     for name, _, seen in list_seen(now):
-        more = [
-            format_unit(" " * _GAP * bool(line)),
-            format_label(f"{name} ", 0),
-            format_value(f"{seen.color.name if seen else '–':<{MAX_NAME_CELLS}}"),
-        ]
-        if _measure_line(line) + _measure_line(more) <= width:
+        gap = " " * _GAP * bool(line)
+        more = style_parts(f"{gap}{name} ", f"{seen.color.name if seen else '–':<{MAX_NAME_CELLS}}")
+        if measure_line(line) + measure_line(more) <= width:
             line += more
     return line
 
@@ -271,18 +265,16 @@ def _arrange_cells(now: Snapshot, height: int, detail: int) -> tuple[list[list[L
     sensors = [build_color_cell(name, seen, detail > 1) for name, _, seen in list_seen(now)]
     ranging: list[Line] = []
     if now.ultrasonic_mm is not None:
-        ranging.append(
-            [format_label("US", 3), *format_values(f"{now.ultrasonic_mm / 10:5.1f}", "cm")]
-        )
+        ranging.append(style_parts("US ", f"{now.ultrasonic_mm / 10:5.1f}", "cm"))
     if robot.gyro is not None:
-        ranging.append([format_label("Gyro", 5), *format_values(f"{now.gyro_deg:4d}", "°")])
+        ranging.append(style_parts("Gyro ", f"{now.gyro_deg:4d}", "°"))
     ranging += [_build_further_line(column, value, _CELL) for column, value in now.further.items()]
     pose = now.instant.pose
     heading = f"{shown_heading_deg(pose.heading_deg):z4.0f}"
-    places: list[Line] = [
-        [format_unit("x "), format_value(f"{pose.x_mm:z4.0f}")],
-        [format_unit("y "), format_value(f"{pose.y_mm:z4.0f}")],
-        [format_unit("h "), format_value(heading)],
+    places = [
+        style_parts("x ", f"{pose.x_mm:z4.0f}"),
+        style_parts("y ", f"{pose.y_mm:z4.0f}"),
+        style_parts("h ", heading),
     ]
     groups = [motors + ranging[:1], sensors + ranging[1:]]
     if not motors or not sensors or max(map(len, groups)) > height:
@@ -291,10 +283,6 @@ def _arrange_cells(now: Snapshot, height: int, detail: int) -> tuple[list[list[L
     return [group for group in groups if group] + [
         places[start : start + height] for start in range(0, 3, height)
     ], len(groups)
-
-
-def _measure_line(line: Line) -> int:
-    return sum(len(text) for text, _ in line)
 
 
 def _build_ranging_lines(now: Snapshot, width: int) -> list[Line]:
@@ -311,33 +299,20 @@ def _build_ultrasonic_line(far_mm: int, width: int) -> Line:
     centimetres = f"{far_mm / 10:.1f}"
     return fit_line(
         width,
-        (
-            format_label("Ultrasonic"),
-            *format_values(f"{centimetres:>6}", " cm", f"{far_mm:8d}", " mm"),
-        ),
-        (
-            format_label("Ultrasonic", 11),
-            *format_values(f"{centimetres:>5}", "cm", f"{far_mm:5d}", "mm"),
-        ),
-        (format_label("Ultrasonic", 11), format_value(centimetres), format_unit("cm")),
+        (pad("Ultrasonic"), f"{centimetres:>6}", " cm", f"{far_mm:8d}", " mm"),
+        (pad("Ultrasonic", 11), f"{centimetres:>5}", "cm", f"{far_mm:5d}", "mm"),
+        (pad("Ultrasonic", 11), centimetres, "cm"),
     )
 
 
 def _build_gyro_line(now: Snapshot, width: int) -> Line:
+    angle = f"{now.gyro_deg}"
+    rate = f"{now.gyro_rate_dps}"
     return fit_line(
         width,
-        (
-            format_label("Gyro"),
-            *format_values(f"{now.gyro_deg:6d}", "°   rate", f"{now.gyro_rate_dps:6d}", " °/s"),
-        ),
-        (
-            format_label("Gyro", 7),
-            *format_values(f"{now.gyro_deg}", "° rate ", f"{now.gyro_rate_dps}", "°/s"),
-        ),
-        (
-            format_label("Gyro", 5),
-            *format_values(f"{now.gyro_deg}", "° ", f"{now.gyro_rate_dps}", "°/s"),
-        ),
+        (pad("Gyro"), f"{angle:>6}", "°   rate", f"{rate:>6}", " °/s"),
+        (pad("Gyro", 7), angle, "° rate ", rate, "°/s"),
+        (pad("Gyro", 5), angle, "° ", rate, "°/s"),
     )
 
 
@@ -349,50 +324,21 @@ def _build_pose_line(now: Snapshot, width: int) -> Line:
     heading = f"{shown_deg:z.1f}"
     return fit_line(
         width,
-        (
-            format_label("Pose"),
-            format_unit("x"),
-            *format_values(f"{x:>7}", "  y", f"{y:>7}", "  heading", f"{heading:>7}", "°"),
-        ),
-        (
-            format_label("Pose"),
-            format_unit("x"),
-            *format_values(f"{x:>7}", " y", f"{y:>7}", " h", f"{heading:>7}", "°"),
-        ),
-        (format_unit("x "), *format_values(x, " y ", y, " ", heading, "°")),
-        (
-            *format_values(f"{pose.x_mm:z.0f}", ",", f"{pose.y_mm:z.0f}"),
-            *format_values(f" {shown_deg:z.0f}", "°"),
-        ),
+        (pad("Pose") + "x", f"{x:>7}", "  y", f"{y:>7}", "  heading", f"{heading:>7}", "°"),
+        (pad("Pose") + "x", f"{x:>7}", " y", f"{y:>7}", " h", f"{heading:>7}", "°"),
+        ("x ", x, " y ", y, " ", heading, "°"),
+        ("", f"{pose.x_mm:z.0f}", ",", f"{pose.y_mm:z.0f} {shown_deg:z.0f}", "°"),
     )
-
-
-def _speed(now: Snapshot) -> str:
-    return f"{now.speed:g}×" if now.speed else "max"
 
 
 def _build_clock_line(now: Snapshot, width: int) -> Line:
     time_s = f"{now.time_s:.2f}"
+    speed = f"{now.speed:g}×" if now.speed else "max"
     return fit_line(
         width,
-        (
-            format_label("Clock"),
-            format_value(f"{time_s:>8}"),
-            format_unit(" s   speed "),
-            format_value(_speed(now)),
-        ),
-        (
-            format_label("Clock", 6),
-            format_value(time_s),
-            format_unit(" s  speed "),
-            format_value(_speed(now)),
-        ),
-        (
-            format_label("Clock", 6),
-            format_value(time_s),
-            format_unit("s "),
-            format_value(_speed(now)),
-        ),
+        (pad("Clock"), f"{time_s:>8}", " s   speed ", speed),
+        (pad("Clock", 6), time_s, " s  speed ", speed),
+        (pad("Clock", 6), time_s, "s ", speed),
     )
 
 
@@ -404,29 +350,15 @@ def _build_state_line(now: Snapshot, width: int) -> Line:
     state = _format_state(now)
     profile = now.spec.profile.name
     pen = "pen down" if now.pen_down else "pen up"
-    turning = [(format_label("State"), state, format_unit(now.turning))] * bool(now.turning)
+    turning = [(pad("State"), state, now.turning)] * bool(now.turning)
     return fit_line(
         width,
         *turning,
-        (
-            format_label("State"),
-            (f"{state[0]:<9}", state[1]),
-            format_unit(" "),
-            format_value(pen.ljust(9)),
-            format_unit(" "),
-            format_value(profile),
-        ),
-        (
-            format_label("State", 6),
-            state,
-            format_unit(" · "),
-            format_value(pen),
-            format_unit(" · "),
-            format_value(profile),
-        ),
-        (format_label("State"), state, format_unit(" · "), format_value(profile)),
-        (format_label("State", 6), state, format_unit(" · "), format_value(profile)),
-        (state, format_unit("·"), format_value(profile)),
+        (pad("State"), (f"{state[0]:<9}", state[1]), " ", pen.ljust(9), " ", profile),
+        (pad("State", 6), state, " · ", pen, " · ", profile),
+        (pad("State"), state, " · ", profile),
+        (pad("State", 6), state, " · ", profile),
+        ("", state, "·", profile),
         (state,),
     )
 
@@ -437,32 +369,14 @@ def _build_ranging_line(now: Snapshot, width: int) -> list[Line]:
         return _build_ranging_lines(now, width)
     centimetres = f"{now.ultrasonic_mm / 10:.1f}"
     angle = f"{now.gyro_deg}"
-    far = format_value(f"{centimetres:>6}")
+    far = f"{centimetres:>6}"
     line = fit_line(
         width,
-        (
-            format_label("Ultrasonic"),
-            far,
-            format_unit(" cm   Gyro"),
-            format_value(f"{angle:>5}"),
-            format_unit("°"),
-        ),
-        (
-            format_label("Ultrasonic", 10),
-            far,
-            format_unit("cm Gyro "),
-            format_value(angle),
-            format_unit("°"),
-        ),
-        (
-            format_label("Ultrasonic", 10),
-            far,
-            format_unit("cm G "),
-            format_value(angle),
-            format_unit("°"),
-        ),
-        (format_label("US", 2), far, format_unit("cm G "), format_value(angle), format_unit("°")),
-        (format_label("US", 2), far, format_unit("cm")),
+        (pad("Ultrasonic"), far, " cm   Gyro", f"{angle:>5}", "°"),
+        (pad("Ultrasonic", 10), far, "cm Gyro ", angle, "°"),
+        (pad("Ultrasonic", 10), far, "cm G ", angle, "°"),
+        ("US", far, "cm G ", angle, "°"),
+        ("US", far, "cm"),
     )
     return [line]
 
@@ -472,22 +386,13 @@ def _place_and_time(now: Snapshot, width: int) -> Line:
     x = f"{pose.x_mm:z.0f}"
     y = f"{pose.y_mm:z.0f}"
     heading = f"{shown_heading_deg(pose.heading_deg):z.0f}"
-    position = format_unit("x "), format_value(x), format_unit(" y "), format_value(y)
-    where = (*position, format_unit(" "), format_value(heading), format_unit("°"))
-    named = (*position, format_unit(" h "), format_value(heading), format_unit("°"))
+    time_s = f"{now.time_s:.2f}"
+    state = _format_state(now)
     return fit_line(
         width,
-        (*named, format_value(f"  {now.time_s:.2f}"), format_unit(" s  "), _format_state(now)),
-        (*where, format_value(f"  {now.time_s:.2f}"), format_unit(" s  "), _format_state(now)),
-        (*where, format_value(f" {now.time_s:.2f}"), format_unit("s")),
-        (
-            format_value(x),
-            format_unit(","),
-            format_value(y),
-            format_value(f" {heading}"),
-            format_unit("° "),
-            format_value(f"{now.time_s:.1f}"),
-            format_unit("s"),
-        ),
-        (format_value(f"{now.time_s:.2f}"), format_unit(" s")),
+        ("x ", x, " y ", y, " h ", heading, "°", f"  {time_s}", " s  ", state),
+        ("x ", x, " y ", y, " ", heading, "°", f"  {time_s}", " s  ", state),
+        ("x ", x, " y ", y, " ", heading, "°", f" {time_s}", "s"),
+        ("", x, ",", f"{y} {heading}", "° ", f"{now.time_s:.1f}", "s"),
+        ("", time_s, " s"),
     )

@@ -17,42 +17,47 @@ from tuisim.engine.core.state import MotorValues
 from tuisim.programs.facts import read_facts
 from tuisim.terminal.text_runs import Line, Run, cut
 
-LABEL = Style(color=palette.LABEL)
+WORDS = Style(color=palette.LABEL)
+"""For labels, units and other words between values."""
 VALUE = Style(color=palette.WHITE, bold=True)
-UNIT = Style(color=palette.LABEL)
 WARNING = Style(color=design.RED, bold=True)
 COLUMN = 12
 """Width of the labels if there is room."""
 
 
-def fit_line(width: int, *variants: Sequence[Run]) -> Line:
-    """Return the first variant of a line that fits a width in cells; if none fits, return the last variant."""
+def fit_line(width: int, *variants: Sequence[str | Run]) -> Line:
+    """Return the first variant of a line that fits a width in cells; if none fits, return the last variant.
+
+    Args:
+        width: The width.
+        variants: The parts of each variant, as for `style_parts`.
+    """
     for variant in variants:
-        if sum(len(text) for text, _ in variant) <= width:
-            return list(variant)
-    return list(variants[-1])
+        line = style_parts(*variant)
+        if measure_line(line) <= width:
+            return line
+    return line
 
 
-def format_label(text: str, column: int = COLUMN) -> Run:
-    """Return a label, padded to `column` cells, in the style of labels."""
-    return text.ljust(column), LABEL
+def measure_line(line: Line) -> int:
+    """Return the width of a line in cells."""
+    return sum(len(text) for text, _ in line)
 
 
-def format_value(text: str) -> Run:
-    """Return the text of a value, with the style that values have in the panel."""
-    return text, VALUE
+def style_parts(*parts: str | Run) -> Line:
+    """Return texts with the styles of the panel: words and values in turn, such as a label, a value and its unit.
 
-
-def format_unit(text: str) -> Run:
-    """Return a unit, or other words between values, with the style that units have in the panel."""
-    return text, UNIT
-
-
-def format_values(*texts: str) -> list[Run]:
-    """Return values and units in their styles; the texts are a value, its unit, the next value, and so on."""
+    A part that has a style of its own keeps it.
+    """
     return [
-        format_unit(text) if index % 2 else format_value(text) for index, text in enumerate(texts)
+        part if isinstance(part, tuple) else (part, VALUE if index % 2 else WORDS)
+        for index, part in enumerate(parts)
     ]
+
+
+def pad(label: str, column: int = COLUMN) -> str:
+    """Return a label, padded to `column` cells."""
+    return label.ljust(column)
 
 
 MAX_NAME_CELLS = 7
@@ -113,15 +118,11 @@ def build_color_cell(name: str, seen: LightSeen | None, with_color: bool) -> Lin
         seen: Its reading; None while the mat is unknown.
         with_color: Whether to add the name of the colour.
     """
+    label = pad(f"{name} ", _NAME_CELLS)
     if seen is None:
-        return [format_label(f"{name} ", _NAME_CELLS), format_unit("–")]
-    cell: Line = [
-        format_label(f"{name} ", _NAME_CELLS),
-        format_value(seen.value),
-        format_unit(seen.unit),
-        build_swatch(seen.color),
-    ]
-    return [*cell, format_value(f" {seen.color.name:<{MAX_NAME_CELLS}}")] if with_color else cell
+        return style_parts(f"{label}–")
+    cell = style_parts(label, seen.value, seen.unit, build_swatch(seen.color))
+    return [*cell, (f" {seen.color.name:<{MAX_NAME_CELLS}}", VALUE)] if with_color else cell
 
 
 def build_sensor_lines(
@@ -129,7 +130,7 @@ def build_sensor_lines(
 ) -> tuple[Line, Line]:
     """Return the reading of a colour sensor in two lines; the second line has the channels and the colour."""
     if seen is None:
-        return [format_label(f"{name} {port}"), format_unit("–")], []
+        return style_parts(f"{pad(f'{name} {port}')}–"), []
     color = seen.color
     value = seen.value
     unit = seen.unit if seen.read is LightRead.REFLECTED else " %"
@@ -141,67 +142,35 @@ def build_sensor_lines(
     )
     first = fit_line(
         width,
-        (
-            format_label(f"{name} {port} "),
-            format_unit(f"{words[0]} "),
-            format_value(value),
-            format_unit(f"{unit}  {words[1]} "),
-            format_value(other),
-            format_unit(" %"),
-        ),
-        (
-            format_label(f"{name} ", _NAME_CELLS),
-            format_unit(words[0]),
-            format_value(short_value),
-            format_unit(f" {words[1]}"),
-            format_value(short_other),
-        ),
-        (
-            format_label(name, 8),
-            format_value(short_value),
-            format_unit(f" {words[1]}"),
-            format_value(short_other),
-        ),
-        (format_label(name, _NAME_CELLS - 1), format_value(short_value), format_unit("%")),
+        (pad(f"{name} {port} ") + f"{words[0]} ", value, f"{unit}  {words[1]} ", other, " %"),
+        (pad(f"{name} ", _NAME_CELLS) + words[0], short_value, f" {words[1]}", short_other),
+        (pad(name, 8), short_value, f" {words[1]}", short_other),
+        (pad(name, _NAME_CELLS - 1), short_value, "%"),
     )
-    wide = f"{color.rgb}"
-    narrow = wide.replace(" ", "")
+    rgb = f"{color.rgb}"
+    short_rgb = rgb.replace(" ", "")
+    swatch = build_swatch(color)
     second = fit_line(
         width,
-        (
-            format_label("  color"),
-            format_value(wide.ljust(16)),
-            build_swatch(color),
-            format_value(f" {color.name}"),
-        ),
-        (
-            format_label("", 2),
-            format_value(narrow.ljust(14)),
-            build_swatch(color),
-            format_value(f" {color.name}"),
-        ),
-        (build_swatch(color), format_value(f" {narrow}")),
+        (pad("  color"), rgb.ljust(16), swatch, f" {color.name}"),
+        ("  ", short_rgb.ljust(14), swatch, f" {color.name}"),
+        (swatch, f" {short_rgb}"),
     )
     return first, second
 
 
 def build_sensor_line(name: str, port: str, seen: LightSeen | None, width: int) -> Line:
     """Return the reading of a colour sensor in one line."""
+    label = pad(f"{name} ", _NAME_CELLS)
     if seen is None:
-        return [format_label(f"{name} ", _NAME_CELLS), format_unit("–")]
-    label = format_label(f"{name} ", _NAME_CELLS)
-    after = (build_swatch(seen.color), format_value(f" {seen.color.name}"))
+        return style_parts(f"{label}–")
+    color_name = (f" {seen.color.name}", VALUE)
+    after = (build_swatch(seen.color), color_name)
     return fit_line(
         width,
-        (
-            format_label(f"{name} {port} "),
-            format_unit(f"{seen.word} "),
-            format_value(seen.value),
-            format_unit(f"{seen.unit:>2}  "),
-            *after,
-        ),
-        (label, format_value(seen.value), format_unit(f"{seen.unit} "), *after),
-        (label, format_value(seen.value), format_unit(seen.unit)),
+        (pad(f"{name} {port} ") + f"{seen.word} ", seen.value, f"{seen.unit:>2}  ", *after),
+        (label, seen.value, f"{seen.unit} ", *after),
+        (label, seen.value, seen.unit),
     )
 
 
@@ -225,7 +194,7 @@ def build_extra_motor_lines(now: Snapshot, width: int) -> list[Line]:
             f"Motor {motor.port[-1]}",
             motor.port[-1],
             round(position_deg),
-            format_value(f"{round(dps):d}"),
+            (f"{round(dps)}", VALUE),
             width,
         )
         for motor, (position_deg, dps) in zip(
@@ -248,27 +217,20 @@ def build_driver_line(values: MotorValues, scale: float, width: int) -> Line:
     word = _describe_motor_state(state)
     return fit_line(
         width,
-        (
-            format_label(""),
-            format_unit("asked "),
-            *format_values(asked_text, " °/s  duty ", duty, " %  "),
-            word,
-        ),
-        (format_unit("asked "), *format_values(asked_text, " °/s  duty ", duty, " %  "), word),
-        (format_unit("asked "), *format_values(asked_text, "°/s ", duty, "% "), word),
-        (*format_values(asked_text, "°/s "), word),
+        (pad("") + "asked ", asked_text, " °/s  duty ", duty, " %  ", word),
+        ("asked ", asked_text, " °/s  duty ", duty, " %  ", word),
+        ("asked ", asked_text, "°/s ", duty, "% ", word),
+        ("", asked_text, "°/s ", word),
         (word,),
     )
 
 
 def add_states(lines: list[Line], now: Snapshot, width: int) -> list[Line]:
     """Return the lines of the wheel motors, each with the state of its driver behind it if that fits."""
-    states = [
-        (*format_values("", "  "), _describe_motor_state(values[3]))
-        for values in now.instant.motors
-    ]
+    states = [_describe_motor_state(values[3]) for values in now.instant.motors]
     return [
-        fit_line(width, (*line, *state), line) for line, state in zip(lines, states, strict=False)
+        fit_line(width, (*line, ("  ", WORDS), state), line)
+        for line, state in zip(lines, states, strict=False)
     ] or lines
 
 
@@ -289,7 +251,7 @@ def _build_wheel_line(now: Snapshot, name: str, short: str, width: int) -> Line:
     position_deg, dps = now.list_turns()[number]
     if now.instant.motors:
         dps = now.instant.motors[number][1] * now.instant.get_scale(number)
-    speed = ("stalled", WARNING) if now.stalled[number] else format_value(f"{round(dps):d}")
+    speed = ("stalled", WARNING) if now.stalled[number] else (f"{round(dps)}", VALUE)
     return _build_motor_line(name, short, round(position_deg), speed, width)
 
 
@@ -304,31 +266,20 @@ def _build_motor_line(name: str, short: str, counts: int, speed: Run, width: int
         width: Columns inside the border.
     """
     warns = speed[1] is WARNING
-    unit, close = (
-        (format_unit(""), format_unit("")) if warns else (format_unit(" °/s"), format_unit("°/s"))
-    )
+    unit, short_unit = ("", "") if warns else (" °/s", "°/s")
+    end = (short_unit, WORDS)
+    short_speed = _align_right(speed, 6 + 3 * warns)
     return fit_line(
         width,
         (
-            format_label(name),
-            format_unit("tacho"),
-            format_value(f"{counts:8d}"),
+            pad(name) + "tacho",
+            f"{counts:8d}",
             _align_right(speed, 7 + 4 * warns),
-            unit,
+            (unit, WORDS),
         ),
-        (
-            format_label(name, 11),
-            format_value(f"{counts:6d}"),
-            _align_right(speed, 6 + 3 * warns),
-            close,
-        ),
-        (format_label(name, 11), format_value(f"{counts:d} "), speed, close),
-        (
-            format_label(short, 2),
-            format_value(f"{counts:7d}"),
-            _align_right(speed, 6 + 3 * warns),
-            close,
-        ),
+        (pad(name, 11), f"{counts:6d}", short_speed, end),
+        (pad(name, 11), f"{counts} ", speed, end),
+        (pad(short, 2), f"{counts:7d}", short_speed, end),
     )
 
 
@@ -353,12 +304,12 @@ def build_motor_cells(now: Snapshot, *, with_speed: bool) -> list[Line]:
 def _build_motor_cell(
     name: str, counts: float, dps: float, *, has_stalled: bool, is_held: bool, with_speed: bool
 ) -> Line:
-    cell: Line = [format_label(name, 2), format_value(f"{round(counts):5d}")]
+    cell = style_parts(pad(name, 2), f"{round(counts):5d}")
     if has_stalled:
         return [*cell, (" stalled" if with_speed else "!", WARNING)]
     if is_held and with_speed:
-        return [*cell, format_value(" holding")]
-    return [*cell, *format_values(f"{round(dps):6d}", "°/s")] if with_speed else cell
+        return [*cell, (" holding", VALUE)]
+    return [*cell, (f"{round(dps):6d}", VALUE), ("°/s", WORDS)] if with_speed else cell
 
 
 def _align_right(run: Run, width: int) -> Run:
