@@ -118,9 +118,15 @@ def label_of_key(key: str) -> str:
 def build_bindings(actions: Iterable[Action[Any, Any]]) -> list[BindingType]:
     """Return the bindings with which Textual runs actions by their keys."""
     return [
-        Binding(action.key, _call(action), action.title, show=False, priority=action.comes_first)
+        Binding(action.key, _call(action), action.title, priority=action.comes_first)
         for action in actions
     ]
+
+
+def list_bindings(kind: type[DOMNode]) -> list[Binding]:
+    """Return the bindings that a class itself has, without those of its base classes."""
+    bindings = kind.__dict__.get("BINDINGS", ())
+    return [Binding(*bound) if isinstance(bound, tuple) else bound for bound in bindings]
 
 
 def _call(action: Action[Any, Any]) -> str:
@@ -166,7 +172,7 @@ class ActionHost(DOMNode):
         for action in changed:
             for key in action.key.split(","):
                 find_bindings(self).bind(
-                    key, _call(action), action.title, show=False, priority=action.comes_first
+                    key, _call(action), action.title, priority=action.comes_first
                 )
         self.ACTIONS = actions
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from textual import events, on
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.driver import Driver
 from textual.timer import Timer
 from textual.widgets import Input
@@ -168,7 +168,7 @@ class LabApp(PanelMessages):
     ACTIONS = ACTIONS
     BINDINGS: ClassVar[list[BindingType]] = [
         *build_bindings(ACTIONS.values()),
-        Binding("escape", "leave_field", "Leave a field", show=False),
+        ("escape", "leave_field", "Leave a field"),
     ]
 
     def __init__(self, settings: AppSettings, picture_mode: PictureMode | None = None) -> None:

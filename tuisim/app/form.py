@@ -8,7 +8,7 @@ from rich.style import Style
 from rich.text import Text
 from textual import events, on
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical
 from textual.message import Message
 from textual.reactive import reactive
@@ -58,8 +58,8 @@ class Choice(_Control):
 
     DEFAULT_CSS = "Choice { height: 1; width: 1fr; }"
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("left", "step(-1)", "Before", show=False),
-        Binding("right,enter", "step(1)", "Next", show=False),
+        ("left", "step(-1)", "Before"),
+        ("right,enter", "step(1)", "Next"),
     ]
 
     @dataclass
@@ -245,12 +245,12 @@ class Slider(_Control):
     FOOTER_KEYS: ClassVar[tuple[KeyWord, ...]] = (("← →", "set"), ("0…9", "number"))
     COMPONENT_CLASSES: ClassVar[set[str]] = {"slider--filled", "slider--empty", "slider--knob"}
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("left", f"move({-STEP})", "Less", show=False),
-        Binding("right", f"move({STEP})", "More", show=False),
-        Binding("shift+left,pagedown,down", f"move({-LONG_STEP})", "Much less", show=False),
-        Binding("shift+right,pageup,up", f"move({LONG_STEP})", "Much more", show=False),
-        Binding("home", "put(0)", "None", show=False),
-        Binding("end", "put_last", "Most", show=False),
+        ("left", f"move({-STEP})", "Less"),
+        ("right", f"move({STEP})", "More"),
+        ("shift+left,pagedown,down", f"move({-LONG_STEP})", "Much less"),
+        ("shift+right,pageup,up", f"move({LONG_STEP})", "Much more"),
+        ("home", "put(0)", "None"),
+        ("end", "put_last", "Most"),
     ]
 
     @dataclass

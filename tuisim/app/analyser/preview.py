@@ -11,7 +11,7 @@ from rich.table import Table
 from rich.text import Text
 from textual import on
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.containers import Horizontal, ScrollableContainer, VerticalScroll
 from textual.widgets import Label, Select, Static
 
@@ -48,11 +48,8 @@ class PreviewDialog(Dialog[ReadChoices]):
 
     HINT = "Enter opens · Escape goes back"
     BINDINGS: ClassVar[list[BindingType]] = [
-        *(
-            Binding(label[0].lower(), f"choose('{name}')", label, show=False)
-            for name, label in _FIELDS.items()
-        ),
-        Binding("enter", "open", "", show=False),
+        *((label[0].lower(), f"choose('{name}')", label) for name, label in _FIELDS.items()),
+        ("enter", "open"),
     ]
 
     def __init__(self, file: str, choices: ReadChoices, log: Log) -> None:

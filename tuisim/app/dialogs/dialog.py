@@ -23,7 +23,7 @@ from textual.strip import Strip
 from textual.widgets import Input, OptionList, Static
 
 from tuisim.app import background
-from tuisim.app.action import KeyFooter, KeyWord, label_of_key, press
+from tuisim.app.action import KeyFooter, KeyWord, label_of_key, list_bindings, press
 from tuisim.app.background import Made
 from tuisim.base.errors import TuisimError
 from tuisim.terminal.cell_view import JoinedStrip, LazyStrip
@@ -59,7 +59,7 @@ def name_and_title(name: str, title: str, name_cells: int, wraps: bool = True) -
 
 
 MOVE_KEYS = [
-    Binding(key, f"move('{action}')", show=False)
+    (key, f"move('{action}')")
     for key, action in (
         ("down", "cursor_down"),
         ("up", "cursor_up"),
@@ -107,9 +107,9 @@ class ClosesOnce(HookedScreen[Result], Generic[Result]):
 
     # The app's keys do not work below a modal screen.
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("ctrl+z", "app.suspend_process", "Suspend", show=False),
-        Binding("ctrl+l", "app.redraw", "Redraw", show=False),
-        Binding("f12", "app.save_screen", "Screenshot", show=False),
+        ("ctrl+z", "app.suspend_process", "Suspend"),
+        ("ctrl+l", "app.redraw", "Redraw"),
+        ("f12", "app.save_screen", "Screenshot"),
     ]
 
     class Changed(Message):
@@ -206,7 +206,7 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
     TITLE_TEXT: str = ""
     HINT: str = "Escape closes"
     VERTICAL_BREAKPOINTS: list[tuple[int, str]] | None = _HEIGHTS
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", "Close", show=False)]
+    BINDINGS: ClassVar[list[BindingType]] = [("escape", "leave", "Close")]
 
     def compose(self) -> ComposeResult:
         # Textual would set this class only after it has drawn the dialog once.
@@ -243,12 +243,7 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
 
     def _collect_bindings(self) -> list[Binding]:
         kinds = [kind for kind in type(self).__mro__ if issubclass(kind, Dialog)]
-        return [
-            binding
-            for kind in kinds
-            for binding in kind.__dict__.get("BINDINGS", ())
-            if isinstance(binding, Binding)
-        ]
+        return [binding for kind in kinds for binding in list_bindings(kind)]
 
     async def on_click(self, event: Click) -> None:
         """Press a key of the dialog if the user has clicked the key's word in the footer below the dialog.

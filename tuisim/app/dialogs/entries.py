@@ -9,7 +9,7 @@ from typing import ClassVar, Generic, TypeVar
 
 from textual import on
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
@@ -60,8 +60,8 @@ class _TextList(_List[None], Generic[Entry]):
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("delete,backspace", "remove", "Delete", show=False),
-        Binding("space", "switch", "On or off", show=False),
+        ("delete,backspace", "remove", "Delete"),
+        ("space", "switch", "On or off"),
     ]
     PLACEHOLDER: ClassVar[str] = ""
 
@@ -246,9 +246,7 @@ class SavedPoses(_List[Pose]):
 
     TITLE_TEXT: str = "Saved poses"
     HINT: str = "Enter goes there · Delete removes · Escape closes"
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("delete,backspace", "remove", "Delete", show=False)
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = [("delete,backspace", "remove", "Delete")]
 
     def __init__(self, here: Pose) -> None:
         super().__init__()

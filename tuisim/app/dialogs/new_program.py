@@ -8,7 +8,7 @@ from typing import ClassVar, NamedTuple
 
 from textual import events, on
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.containers import Horizontal
 from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
@@ -204,8 +204,8 @@ class NewProgramDialog(Dialog[str]):
     TITLE_TEXT: str = "A new program"
     HINT: str = "Letters or ↑ ↓ choose · ← → next list · Enter begins · Escape closes"
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("right,tab", "app.focus_next", "Next list", show=False),
-        Binding("left,shift+tab", "app.focus_previous", "Previous list", show=False),
+        ("right,tab", "app.focus_next", "Next list"),
+        ("left,shift+tab", "app.focus_previous", "Previous list"),
     ]
 
     def __init__(self, mats: Mapping[str, str], current: str) -> None:

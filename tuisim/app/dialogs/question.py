@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, ClassVar
 from rich.table import Table
 from textual import events, on
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.suggester import SuggestionReady
 from textual.widgets import Input, Static
 
@@ -91,10 +91,10 @@ class BranchQuestion(Dialog[str]):
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("y", "branch", "Branch", show=False),
-        Binding("enter", "likely", show=False),
-        Binding("r", "restart", "From the start", show=False),
-        Binding("n", "leave", "Stay", show=False),
+        ("y", "branch", "Branch"),
+        ("enter", "likely"),
+        ("r", "restart", "From the start"),
+        ("n", "leave", "Stay"),
     ]
 
     def __init__(self, branch: Branch, change: str, in_run: bool, restart: bool) -> None:
@@ -157,8 +157,8 @@ class LeaveQuestion(Dialog[bool]):
     TITLE_TEXT: str = "Quit?"
     HINT: str = "y quits · n stays"
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("y,q,enter", "yes", "Quit", show=False),
-        Binding("n", "leave", "Stay", show=False),
+        ("y,q,enter", "yes", "Quit"),
+        ("n", "leave", "Stay"),
     ]
 
     def compose_content(self) -> ComposeResult:
@@ -187,9 +187,7 @@ class LineInput(Input):
         placeholder: Text of the empty field.
     """
 
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("tab", "accept", "Accept the completion", show=False)
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = [("tab", "accept", "Accept the completion")]
 
     def __init__(self, value: str, words: Sequence[str], placeholder: str) -> None:
         super().__init__(value, placeholder, compact=True, select_on_focus=False)

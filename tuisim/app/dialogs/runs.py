@@ -12,7 +12,7 @@ from rich.table import Table
 from rich.text import Text
 from textual import on
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.containers import Horizontal, VerticalScroll
 from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
@@ -312,7 +312,7 @@ class RunsChooser(RunChooser):
     """The dialog in which the user chooses one or several stored runs; it returns their ids, separated by blanks."""
 
     TITLE_TEXT: str = "Open runs"
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("space", "mark", "Mark", show=False)]
+    BINDINGS: ClassVar[list[BindingType]] = [("space", "mark", "Mark")]
 
     def __init__(self) -> None:
         super().__init__()
@@ -381,7 +381,7 @@ class Differences(Dialog[bool]):
 
     # The binding has no word, since the footer takes the word for Enter from the hint in the frame. The hint names
     # Enter only if there is a difference to go to.
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("enter", "go", show=False)]
+    BINDINGS: ClassVar[list[BindingType]] = [("enter", "go")]
 
     def __init__(self, first: str, second: str, diff: RunDiff, *, samples: bool = False) -> None:
         super().__init__()

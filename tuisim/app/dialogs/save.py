@@ -10,7 +10,7 @@ from typing import ClassVar
 
 from textual import on
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.widgets import Input, Static
 
 from tuisim.app.dialogs.dialog import Dialog
@@ -203,9 +203,7 @@ class ExportDialog(FileDialog):
     TITLE_TEXT: str = "Export the log"
     HINT: str = "Enter writes · ctrl+t switches · Escape closes"
     SUFFIXES: str = LISTED
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("ctrl+t", "switch", "Samples or telemetry", show=False)
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = [("ctrl+t", "switch", "Samples or telemetry")]
 
     def __init__(self, run_id: str, program: str) -> None:
         super().__init__(f"{Path(program).stem}.csv")

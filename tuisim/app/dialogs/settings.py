@@ -9,7 +9,7 @@ from rich.table import Table
 from rich.text import Text
 from textual import on
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
 
@@ -65,9 +65,7 @@ class SettingsScreen(Dialog[None]):
 
     TITLE_TEXT: str = "Settings"
     HINT: str = "Enter changes · Delete resets · Escape closes"
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("delete,backspace", "usual", "Back to the default", show=False)
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = [("delete,backspace", "usual", "Back to the default")]
 
     def __init__(self, change: Change, themes: Callable[[], Dialog[str]]) -> None:
         super().__init__()

@@ -56,8 +56,7 @@ class Welcome(Dialog[Begin | Recent]):
     TITLE_TEXT: str = "Welcome to tuisim"
     HINT: str = "A number, or ↑ ↓ and Enter · Escape closes"
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding(str(number), f"take({number})", "Begin", show=False)
-        for number in range(1, _MAX_NUMBERED + 1)
+        (str(number), f"take({number})", "Begin") for number in range(1, _MAX_NUMBERED + 1)
     ]
 
     def __init__(self, is_first: bool, recent: Sequence[Recent]) -> None:
@@ -76,13 +75,13 @@ class Welcome(Dialog[Begin | Recent]):
     def on_mount(self) -> None:
         actions = self.app.ACTIONS if isinstance(self.app, ActionHost) else {}
         self._app_keys = [
-            Binding(action.key, f"leave_for('{name}')", action.footer or name, show=False)
+            Binding(action.key, f"leave_for('{name}')", action.footer or name)
             for name, action in actions.items()
             if f"{{{name}}}" in _KEY_WORDS
         ]
         for binding in self._app_keys:
             for key in binding.key.split(","):
-                find_bindings(self).bind(key, binding.action, binding.description, show=False)
+                find_bindings(self).bind(key, binding.action, binding.description)
         listed = self.query_one(OptionList)
         listed.focus()
         if len(self._entries) > len(Begin):

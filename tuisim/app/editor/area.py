@@ -13,7 +13,7 @@ from rich.segment import Segment
 from rich.style import Style
 from rich.text import Text
 from textual import events
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.geometry import Offset, Region
 from textual.message import Message
 from textual.strip import Strip
@@ -92,11 +92,11 @@ class CodeArea(TextArea):
         *(f"code--{kind}" for kind in KINDS),
     }
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("ctrl+f", "want('find')", "Find", show=False),
-        Binding("ctrl+g", "want('line')", "Go to a line", show=False),
-        Binding("ctrl+a", "select_text", "Select all", show=False),
-        Binding("ctrl+home", "go_to_end(False)", "Start of the text", show=False),
-        Binding("ctrl+end", "go_to_end(True)", "End of the text", show=False),
+        ("ctrl+f", "want('find')", "Find"),
+        ("ctrl+g", "want('line')", "Go to a line"),
+        ("ctrl+a", "select_text", "Select all"),
+        ("ctrl+home", "go_to_end(False)", "Start of the text"),
+        ("ctrl+end", "go_to_end(True)", "End of the text"),
     ]
 
     @dataclass

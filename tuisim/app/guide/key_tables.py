@@ -7,11 +7,10 @@ from contextlib import suppress
 from importlib import import_module
 from typing import Any
 
-from textual.binding import Binding
 from textual.dom import DOMNode
 from textual.widgets import Input
 
-from tuisim.app.action import FIELD_KEYS, Action, KeyWord, label_of_key
+from tuisim.app.action import FIELD_KEYS, Action, KeyWord, label_of_key, list_bindings
 from tuisim.app.editor.area import EDITOR_KEYS
 from tuisim.app.keymap import apply_keys
 from tuisim.app.panels import PANELS
@@ -35,8 +34,7 @@ def own_keys(widgets: Iterable[DOMNode]) -> list[KeyWord]:
         fields = FIELD_KEYS if isinstance(widget, Input) else fields
         # Textual's own classes name keys for scrolling and selecting that nobody looks for.
         kinds = [kind for kind in type(widget).__mro__ if kind.__module__.startswith("tuisim.")]
-        for bound in [bound for kind in kinds for bound in kind.__dict__.get("BINDINGS", ())]:
-            assert isinstance(bound, Binding)
+        for bound in [bound for kind in kinds for bound in list_bindings(kind)]:
             keys.setdefault(bound.description, []).extend(map(label_of_key, bound.key.split(",")))
     return [*fields, *((_join_keys(labels), does) for does, labels in keys.items())]
 

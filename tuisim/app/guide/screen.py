@@ -10,7 +10,7 @@ from rich.style import Style
 from rich.text import Text
 from textual import events, on
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.containers import Horizontal, VerticalScroll
 from textual.geometry import Size
 from textual.widgets import Input, Static, Tree
@@ -231,14 +231,14 @@ class GuideScreen(Dialog[None]):
     TITLE_TEXT = "Guide"
     HINT = "type to search · Enter opens · tab switch · esc closes"
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("question_mark,q", "leave", "Close", show=False),
-        Binding("slash", "search", "Search", show=False),
-        Binding("tab,shift+tab", "other_side", "Contents or page", show=False),
-        Binding("left", "contents", "Contents", show=False),
-        Binding("down", "down", "Contents or next answer", show=False),
-        Binding("right", "page", "Page", show=False),
-        Binding("pagedown", "scroll_answers(1)", "Next answers", show=False),
-        Binding("pageup", "scroll_answers(-1)", "Previous answers", show=False),
+        ("question_mark,q", "leave", "Close"),
+        ("slash", "search", "Search"),
+        ("tab,shift+tab", "other_side", "Contents or page"),
+        ("left", "contents", "Contents"),
+        ("down", "down", "Contents or next answer"),
+        ("right", "page", "Page"),
+        ("pagedown", "scroll_answers(1)", "Next answers"),
+        ("pageup", "scroll_answers(-1)", "Previous answers"),
     ]
 
     def __init__(self, keys: KeyPage, topic: Topic) -> None:

@@ -6,7 +6,7 @@ from functools import partial
 from typing import ClassVar
 
 from textual import events
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.message import Message
 from textual.timer import Timer
 
@@ -39,21 +39,13 @@ class Brick(LinesPanel, can_focus=True):
 
     ALLOW_SELECT = False
     BINDINGS: ClassVar[list[BindingType]] = [
+        *((name, f"tap('{name}')", "Press this button of the brick") for name in BUTTONS),
         *(
-            Binding(name, f"tap('{name}')", "Press this button of the brick", show=False)
-            for name in BUTTONS
-        ),
-        *(
-            Binding(key, f"tap_touch('{key}')", "Press the touch sensor on this port", show=False)
+            (key, f"tap_touch('{key}')", "Press the touch sensor on this port")
             for key in _TOUCH_KEYS
         ),
         *(
-            Binding(
-                f"shift+{name}",
-                f"latch('{name}')",
-                "Hold this button down, or release it",
-                show=False,
-            )
+            (f"shift+{name}", f"latch('{name}')", "Hold this button down, or release it")
             for name in BUTTONS
         ),
     ]

@@ -8,7 +8,7 @@ from functools import partial
 from typing import ClassVar
 
 from textual import events
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.message import Message
 
 from tuisim.app.action import KeyWord
@@ -37,20 +37,17 @@ class Chart(LinesPanel, can_focus=True):
     FROZEN: ClassVar[str] = "frozen: f follows again"
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("up", "select(-1)", "Previous trace"),
-        Binding("down", "select(1)", "Next trace"),
-        Binding("enter", "tick", "Show or hide the selected trace"),
-        *(
-            Binding(str(number), f"tick({number})", "Show or hide this trace", show=False)
-            for number in range(1, 10)
-        ),
-        Binding("left", "move_cursor(-1)", "Cursor back"),
-        Binding("right", "move_cursor(1)", "Cursor forward"),
-        Binding("shift+left", "move_cursor(-10)", "Cursor far back", show=False),
-        Binding("shift+right", "move_cursor(10)", "Cursor far forward", show=False),
-        Binding("escape", "leave", "Remove the cursor; without one, leave the chart"),
-        Binding("f", "freeze", "Follow or freeze"),
-        Binding("delete", "clear", "Clear chart"),
+        ("up", "select(-1)", "Previous trace"),
+        ("down", "select(1)", "Next trace"),
+        ("enter", "tick", "Show or hide the selected trace"),
+        *((str(number), f"tick({number})", "Show or hide this trace") for number in range(1, 10)),
+        ("left", "move_cursor(-1)", "Cursor back"),
+        ("right", "move_cursor(1)", "Cursor forward"),
+        ("shift+left", "move_cursor(-10)", "Cursor far back"),
+        ("shift+right", "move_cursor(10)", "Cursor far forward"),
+        ("escape", "leave", "Remove the cursor; without one, leave the chart"),
+        ("f", "freeze", "Follow or freeze"),
+        ("delete", "clear", "Clear chart"),
     ]
 
     @dataclass

@@ -10,7 +10,7 @@ from typing import ClassVar, assert_never
 
 from rich.text import Text
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical
 from textual.message import Message
 from textual.widgets import Input, Static, TextArea
@@ -44,9 +44,9 @@ class FindBar(Horizontal):
     FindBar > Input { width: 1fr; height: 1; }
     """
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("escape", "close", "Close", show=False),
-        Binding("down,ctrl+f", "go(1)", "Next", show=False),
-        Binding("up", "go(-1)", "Before", show=False),
+        ("escape", "close", "Close"),
+        ("down,ctrl+f", "go(1)", "Next"),
+        ("up", "go(-1)", "Before"),
     ]
 
     @dataclass
@@ -145,8 +145,8 @@ class Code(Vertical):
     """The code panel: the text of the open program, with its editor."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("ctrl+s", "want('save')", "Save the program", show=False),
-        Binding("f5,ctrl+r", "want('run')", "Run", show=False),
+        ("ctrl+s", "want('save')", "Save the program"),
+        ("f5,ctrl+r", "want('run')", "Run"),
     ]
 
     @dataclass

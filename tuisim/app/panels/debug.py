@@ -6,7 +6,7 @@ import linecache
 from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.message import Message
 
 from tuisim.app.panels import PANELS
@@ -31,13 +31,13 @@ class Debug(LinesPanel, can_focus=True):
 
     ALLOW_SELECT = False
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("up", "scroll_lines(-1)", "Scroll up", show=False),
-        Binding("down", "scroll_lines(1)", "Scroll down", show=False),
-        Binding("pageup", "scroll_lines(-10)", "Page up", show=False),
-        Binding("pagedown", "scroll_lines(10)", "Page down", show=False),
-        Binding("left", "frame(-1)", "The called frame", show=False),
-        Binding("right", "frame(1)", "The caller", show=False),
-        Binding("enter", "thread", "The next thread", show=False),
+        ("up", "scroll_lines(-1)", "Scroll up"),
+        ("down", "scroll_lines(1)", "Scroll down"),
+        ("pageup", "scroll_lines(-10)", "Page up"),
+        ("pagedown", "scroll_lines(10)", "Page down"),
+        ("left", "frame(-1)", "The called frame"),
+        ("right", "frame(1)", "The caller"),
+        ("enter", "thread", "The next thread"),
     ]
 
     @dataclass

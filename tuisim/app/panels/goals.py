@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, ClassVar
 
 from textual import events
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 
 from tuisim.app.panels import PANELS
 from tuisim.app.panels.titles import build_title, count_columns
@@ -30,10 +30,10 @@ class Goals(LinesPanel, can_focus=True):
 
     ALLOW_SELECT = False
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("up", "select(-1)", "The goal above", show=False),
-        Binding("down", "select(1)", "The goal below", show=False),
-        Binding("pageup", "scroll_detail(-3)", "Page up", show=False),
-        Binding("pagedown", "scroll_detail(3)", "Page down", show=False),
+        ("up", "select(-1)", "The goal above"),
+        ("down", "select(1)", "The goal below"),
+        ("pageup", "scroll_detail(-3)", "Page up"),
+        ("pagedown", "scroll_detail(3)", "Page down"),
     ]
 
     def __init__(self) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar
 
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 
 from tuisim.app.action import Act, fill_keys
 from tuisim.app.panels import PANELS
@@ -29,12 +29,12 @@ class LessonPanel(LinesPanel, can_focus=True):
 
     ALLOW_SELECT = False
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("up", "scroll_text(-1)", "Scroll up", show=False),
-        Binding("down", "scroll_text(1)", "Scroll down", show=False),
-        Binding("pageup", "scroll_text(-8)", "Page up", show=False),
-        Binding("pagedown", "scroll_text(8)", "Page down", show=False),
-        Binding("left", "turn(-1)", "The step before", show=False),
-        Binding("right", "turn(1)", "The next step", show=False),
+        ("up", "scroll_text(-1)", "Scroll up"),
+        ("down", "scroll_text(1)", "Scroll down"),
+        ("pageup", "scroll_text(-8)", "Page up"),
+        ("pagedown", "scroll_text(8)", "Page down"),
+        ("left", "turn(-1)", "The step before"),
+        ("right", "turn(1)", "The next step"),
     ]
 
     def __init__(self, is_brief: bool = False) -> None:

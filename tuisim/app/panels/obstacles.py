@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 from textual import on
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.containers import Horizontal
 from textual.message import Message
 from textual.widgets import Input, Label, OptionList, Static
@@ -75,8 +75,8 @@ class Obstacles(EntryPanel):
 
     USE = "Drag to draw another"
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("plus,insert", "add", "Add", show=False),
-        Binding("delete,backspace,minus", "remove", "Remove", show=False),
+        ("plus,insert", "add", "Add"),
+        ("delete,backspace,minus", "remove", "Remove"),
     ]
 
     @dataclass

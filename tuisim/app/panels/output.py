@@ -36,7 +36,7 @@ class Answer(Input):
     """The text field for an answer to `input()`."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("ctrl+d", "end_of_file", "End of file", show=False, priority=True),
+        Binding("ctrl+d", "end_of_file", "End of file", priority=True),
     ]
 
     class EndOfFile(Message):
@@ -215,12 +215,12 @@ class Log(Widget, can_focus=True):
     }
     ALLOW_SELECT = False
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("up", "scroll_lines(-1)", "Scroll up", show=False),
-        Binding("down", "scroll_lines(1)", "Scroll down", show=False),
-        Binding("pageup", "scroll_pages(-1)", "Page up", show=False),
-        Binding("pagedown", "scroll_pages(1)", "Page down", show=False),
-        Binding("home", f"scroll_lines(-{KEPT_LINES * MAX_LINE_CHARS})", "First", show=False),
-        Binding("end", f"scroll_lines({KEPT_LINES * MAX_LINE_CHARS})", "Newest", show=False),
+        ("up", "scroll_lines(-1)", "Scroll up"),
+        ("down", "scroll_lines(1)", "Scroll down"),
+        ("pageup", "scroll_pages(-1)", "Page up"),
+        ("pagedown", "scroll_pages(1)", "Page down"),
+        ("home", f"scroll_lines(-{KEPT_LINES * MAX_LINE_CHARS})", "First"),
+        ("end", f"scroll_lines({KEPT_LINES * MAX_LINE_CHARS})", "Newest"),
     ]
 
     def __init__(self) -> None:

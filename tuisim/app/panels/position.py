@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from textual import on
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.containers import Horizontal
 from textual.message import Message
 from textual.widgets import Input, Label, Static
@@ -52,7 +52,7 @@ class Positioning(FormPanel, can_focus=True):
     """
 
     USE = "Enter: type and place"
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("enter", "type", "Type the place", show=False)]
+    BINDINGS: ClassVar[list[BindingType]] = [("enter", "type", "Type the place")]
     FOOTER_KEYS: ClassVar[tuple[KeyWord, ...]] = (("enter", "numbers"),)
 
     @dataclass

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from textual import on
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.containers import Horizontal, VerticalScroll
 from textual.message import Message
 from textual.widget import Widget
@@ -30,9 +30,9 @@ class Settings(VerticalScroll, can_focus=False):
 
     FOOTER_KEYS: ClassVar[tuple[KeyWord, ...]] = (("↑ ↓", "fields"), ("← →", "choices"))
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("down", "app.focus_next", "Next field", show=False),
-        Binding("up", "app.focus_previous", "Previous field", show=False),
-        Binding("escape", "app.act('panel-settings')", "Close", show=False),
+        ("down", "app.focus_next", "Next field"),
+        ("up", "app.focus_previous", "Previous field"),
+        ("escape", "app.act('panel-settings')", "Close"),
     ]
 
     @dataclass
