@@ -347,7 +347,7 @@ async def test_a_refusal_in_the_go_to_dialog_leaves_its_keys_in_view() -> None:
 
 def test_a_timeline_without_a_run_stands_still() -> None:
     timeline = Timeline()
-    timeline.step(-1)
+    timeline.go(timeline.tick - 1)
     assert (timeline.at, timeline.record(), timeline.list_marks()) == (None, None, [])
     assert not timeline.advance_playback(1.0, 1.0)
     with pytest.raises(ConfigError, match="no run yet"):

@@ -201,7 +201,7 @@ class ActionHost(DOMNode):
 
     def say(self, text: str) -> None:
         """Show a short notice, for as long as it takes to read the notice."""
-        self.app.notify(self.fill_keys(text), markup=False)
+        self.app.notify(self.fill_keys(text))
 
     def fill_keys(self, text: str) -> str:
         """Return `text` with each action id in braces, such as `{run}`, replaced by the key of that action.
@@ -217,7 +217,7 @@ class ActionHost(DOMNode):
 
     def complain(self, error: TuisimError) -> None:
         """Show an error to the user."""
-        self.app.notify(str(error), severity="error", timeout=8, markup=False)
+        self.app.notify(str(error), severity="error", timeout=8)
 
 
 _ALWAYS = ("palette", "help", "quit", "leave")

@@ -261,7 +261,6 @@ class TerminalApp(BufferedApp):
             self.notify(
                 f"The choice applies to this session only: {error}",
                 severity="warning",
-                markup=False,
             )
 
     def action_switch_pixels(self) -> None:
@@ -273,9 +272,9 @@ class TerminalApp(BufferedApp):
             self.choose_pixels(NO_PIXELS)
             self._left_pixels = before
             words = fill_keys(self, "Drawn with characters: {pixels} brings the pixels back")
-            self.notify(words, markup=False)
+            self.notify(words)
         else:
-            self.notify("This terminal does not report that it can draw pixels", markup=False)
+            self.notify("This terminal does not report that it can draw pixels")
 
     def action_save_screen(self) -> None:
         """Save a screenshot of the whole screen, as SVG and PNG, in the working directory."""
@@ -284,7 +283,7 @@ class TerminalApp(BufferedApp):
 
         def handle_saved(files: tuple[Path, Path]) -> None:
             svg, png = files
-            self.notify(f"Saved {svg.name} and {png.name} in {png.parent}", markup=False)
+            self.notify(f"Saved {svg.name} and {png.name} in {png.parent}")
             offer(self, svg, png)
 
         work = partial(save_screenshot, collect_cells(self), Path.cwd())
@@ -292,7 +291,7 @@ class TerminalApp(BufferedApp):
             self,
             work,
             handle_saved,
-            lambda error: self.notify(str(error), severity="error", markup=False),
+            lambda error: self.notify(str(error), severity="error"),
         )
 
     def run_in_terminal(self, command: Sequence[str]) -> None:
@@ -316,11 +315,11 @@ class TerminalApp(BufferedApp):
         """
         host = self.screen if isinstance(self.screen, ActionHost) else self
         if isinstance(self.screen, Dialog):
-            self.notify("A dialog is open: escape closes it", markup=False)
+            self.notify("A dialog is open: escape closes it")
         elif isinstance(host, ActionHost) and event.name in host.ACTIONS:
             host.action_act(event.name)
         elif host is not self and isinstance(self, ActionHost) and event.name in self.ACTIONS:
-            self.notify("That works only in the lab: leave this screen first", markup=False)
+            self.notify("That works only in the lab: leave this screen first")
 
     def action_command_palette(self) -> None:
         """Open the command palette with the actions of the screen, or else of the app; not above an open dialog."""

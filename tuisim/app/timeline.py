@@ -134,10 +134,6 @@ class Timeline:
         self._played_s = None
         self.at = None if tick is None or tick >= self.newest or self.newest <= 0 else max(0, tick)
 
-    def step(self, ticks: int) -> None:
-        """Go forward in the run by a number of ticks; a negative number goes back."""
-        self.go(self.tick + ticks)
-
     def play(self, wall_s: float) -> None:
         """Start playback from the instant in view.
 

@@ -277,7 +277,7 @@ def _build_travel_actions() -> list[LabAction]:
             "colon",
             "Ten ticks forward, while paused",
             TIME,
-            go.step_ten_ticks,
+            partial(go.step_ticks, ticks=10),
             _can_step,
         ),
         Action(
@@ -445,7 +445,7 @@ ACTIONS: Mapping[str, LabAction] = {
             "full_stop",
             "One tick forward, while paused",
             TIME,
-            time_travel.step_tick,
+            partial(time_travel.step_ticks, ticks=1),
             _can_step,
             "tick",
         ),

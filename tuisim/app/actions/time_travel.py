@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from tuisim.engine.runs.recorded_run import Recording
 
 _IS_START = "This is the start of the run"
-MANY_TICKS = 10
-"""Ticks that `:` runs."""
 
 
 def go_to_tick(context: ActionContext, tick: int | None) -> None:
@@ -99,30 +97,18 @@ def go_to_start(context: ActionContext) -> None:
         go_to_tick(context, 0)
 
 
-def step_tick(context: ActionContext) -> None:
-    """Go forward one tick: if a past tick is in view, show the next recorded one; else simulate one.
+def step_ticks(context: ActionContext, ticks: int) -> None:
+    """Go forward by a number of ticks: if a past tick is in view, show a later recorded one; else simulate them.
 
     The newest tick can contain several executed lines of the program. If one of these lines is in view, but not the
     last one, go to the newest instant instead.
     """
     if context.runs.in_past:
-        skip_ticks(context, 1)
+        skip_ticks(context, ticks)
     elif context.debugger.is_away:
         go_to_now(context)
     else:
-        context.runs.send(protocol.StepTicks(1))
-
-
-def step_ten_ticks(context: ActionContext) -> None:
-    """Go forward ten ticks, in the same way as `step_tick`."""
-    timeline = context.runs.timeline
-    if context.runs.in_past:
-        tick = timeline.at or 0
-        go_to_tick(context, tick + MANY_TICKS if tick + MANY_TICKS < timeline.newest else None)
-    elif context.debugger.is_away:
-        go_to_now(context)
-    else:
-        context.runs.send(protocol.StepTicks(MANY_TICKS))
+        context.runs.send(protocol.StepTicks(ticks))
 
 
 def skip_seconds(context: ActionContext, by: int) -> None:

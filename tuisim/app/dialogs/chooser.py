@@ -135,7 +135,7 @@ class ListDialog(FieldDialog[str]):
 
     def report_unread(self, error: TuisimError) -> None:
         """Show what is wrong with the typed text, which stays in the field."""
-        self.app.notify(shorten_error(error), severity="error", markup=False)
+        self.app.notify(shorten_error(error), severity="error")
 
 
 class Chooser(ListDialog):

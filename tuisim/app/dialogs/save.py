@@ -176,7 +176,7 @@ class SaveDialog(FileDialog):
         """Write the file, show a notice, and close the dialog."""
         self._save(target)
         if self._notice:
-            self.app.notify(f"{self._what.capitalize()} saved to {target}", markup=False)
+            self.app.notify(f"{self._what.capitalize()} saved to {target}")
         self.dismiss(target)
 
 
@@ -237,7 +237,7 @@ class ExportDialog(FileDialog):
         self.wait_while(work, report, lambda error: self.report_failure(str(error)))
 
     def _report_written(self, target: Path, rows: int) -> None:
-        self.app.notify(f"{counted(rows, 'row')} saved to {describe_files(target)}", markup=False)
+        self.app.notify(f"{counted(rows, 'row')} saved to {describe_files(target)}")
         offer(self.app, target)
         self.dismiss(target)
 

@@ -14,7 +14,6 @@ from typing import Any
 
 from tuisim.app.setup.next_run import (
     NextRun,
-    change_arguments,
     change_profile,
     change_robot,
     change_values,
@@ -382,11 +381,12 @@ def _format_arguments(plan: NextRun) -> str:
 
 def _change_arguments(plan: NextRun, text: str) -> NextRun:
     try:
-        return change_arguments(plan, tuple(shlex.split(text)))
+        words = tuple(shlex.split(text))
     except ValueError:
         raise ConfigError(
             "a quote is not closed", "put an argument with spaces in '…' or \"…\""
         ) from None
+    return replace(plan, settings=plan.settings.changed({"arguments": words}))
 
 
 def find(plan: NextRun, edit_id: str) -> FormField | None:

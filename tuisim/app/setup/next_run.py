@@ -392,11 +392,6 @@ def change_noise(plan: NextRun, noise: NoiseSpec) -> NextRun:
     )
 
 
-def change_arguments(plan: NextRun, arguments: tuple[str, ...]) -> NextRun:
-    """Return the plan with other arguments of the program."""
-    return replace(plan, settings=plan.settings.changed({"arguments": arguments}))
-
-
 def change_seed(plan: NextRun, seed: int) -> NextRun:
     """Return the plan with another seed."""
     return _put(plan, {"seed": seed})
