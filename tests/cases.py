@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import wraps
+from inspect import signature
 from itertools import product
 from typing import Any
 
@@ -27,7 +28,10 @@ def for_each(**values: Iterable[object]) -> Callable[[Callable[..., None]], Call
 def for_rows(
     arguments: str, table: Mapping[str, Any] | Iterable[Any]
 ) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Run a test for each row of a table, as `cases` does, or of a list, but as one test."""
+    """Run a test for each row of a table, as `cases` does, or of a list, but as one test.
+
+    The rows share its fixtures.
+    """
     names = arguments.split(", ")
     named = table.items() if isinstance(table, Mapping) else ((row, row) for row in table)
     return _as_one(
@@ -43,16 +47,17 @@ def _as_one(
 ) -> Callable[[Callable[..., None]], Callable[..., None]]:
     def as_one(test: Callable[..., None]) -> Callable[..., None]:
         @wraps(test)
-        def run() -> None:
+        def run(**fixtures: object) -> None:
             for case, row in rows:
                 try:
-                    test(**row)
+                    test(**row, **fixtures)
                 except BaseException as error:  # whatever it is, it is raised again
                     error.add_note(f"for {case}")
                     raise
 
-        # The fixtures of a test are its parameters; this one asks for none.
-        del run.__wrapped__
+        asked = signature(test)
+        fixtures = [one for name, one in asked.parameters.items() if name not in rows[0][1]]
+        run.__signature__ = asked.replace(parameters=fixtures)  # type: ignore[attr-defined]
         return run
 
     return as_one

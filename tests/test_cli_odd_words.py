@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.cases import for_each
 from tuisim.cli import run_command
 
 LONG = "x" * 300
@@ -11,10 +12,9 @@ NOBODY = "~nobody-at-all/x"
 
 
 @pytest.mark.usefixtures("home")
-@pytest.mark.parametrize("word", [LONG, LONG + ".toml", "9" * 5000, NOBODY])
-@pytest.mark.parametrize(
-    "command",
-    [
+@for_each(
+    word=[LONG, LONG + ".toml", "9" * 5000, NOBODY],
+    command=[
         "run",
         "runs show",
         "runs rm",

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cases import cases
+from tests.cases import cases, for_each
 from tests.conftest import Command
 from tuisim.base.errors import ConfigError, ObstacleError, ProfileError, RobotError
 from tuisim.engine.core.profile import PROFILES
@@ -399,7 +399,7 @@ def test_a_broken_settings_file_is_refused_with_the_reason(
     check(switch, tmp_path / "broken.toml", content, said)
 
 
-@pytest.mark.parametrize("case", WRONG)
+@for_each(case=WRONG)
 def test_a_wrong_value_in_a_settings_file_is_told_with_its_key(case: str, tmp_path: Path) -> None:
     switch, name = FILES[case.partition(":")[0]]
     text, said = WRONG[case]

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
-from tests.cases import cases, for_rows
+from tests.cases import for_rows
 from tests.conftest import Command
 from tuisim.base.errors import ConfigError
 from tuisim.tasks.goals.files import GoalsFile, find_key_line
@@ -367,7 +367,7 @@ BAD = {
 }
 
 
-@cases("text, message", BAD)
+@for_rows("text, message", BAD)
 def test_a_faulty_goal_file_is_refused_with_its_line(
     text: str, message: str, tmp_path: Path
 ) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cases import cases
+from tests.cases import cases, for_rows
 from tuisim.base.errors import ConfigError
 from tuisim.tasks.lessons.catalogue import SKELETON
 from tuisim.tasks.lessons.files import get_lesson_name, load_lesson
@@ -195,7 +195,7 @@ BAD = {
 }
 
 
-@cases("text, message", BAD)
+@for_rows("text, message", BAD)
 def test_a_faulty_lesson_is_refused_with_its_file_and_key(
     text: str, message: str, tmp_path: Path
 ) -> None:
