@@ -11,7 +11,8 @@ from ev3dev2 import motor
 from tests.cases import for_rows
 from tuisim.tasks.goals.judgement import Change, GoalState, Judgement
 from tuisim.tasks.goals.spec import AllOf, FinishCondition, Goal, ReachCondition, UseCondition
-from tuisim.tasks.marks.outcome import build_outcome
+from tuisim.tasks.goals.trial_world import TrialWorld
+from tuisim.tasks.marks.outcome import Outcome, build_outcome
 from tuisim.tasks.task import Result
 
 FOLDER = Path("/copy-of/student/7")
@@ -20,6 +21,12 @@ DONE = Result(7, {}, "finished", 0, "", "", 0, 100, 1.0, 0.0, 0.0, 0.0)
 
 def _judgement(goal: Goal, state: GoalState, reason: str = "", line: int = 0) -> Judgement:
     return Judgement(goal, (Change(10, 0.1, state, 0.0, 0.0),), reason, line)
+
+
+def _build(result: Result, seed: int) -> Outcome:
+    """The outcome in a world in which all goals count."""
+    names = tuple(judgement.goal.name for judgement in result.judgements)
+    return build_outcome(result, seed, FOLDER, TrialWorld("", {}, names))
 
 
 FAILURES = {
@@ -62,12 +69,12 @@ FAILURES = {
 def test_each_end_of_a_marked_run_has_its_words_for_the_failure(
     result: Result, failure: str
 ) -> None:
-    assert build_outcome(result, 3, FOLDER).failure == failure
+    assert _build(result, 3).failure == failure
 
 
 def test_a_marked_runs_traceback_is_cut_and_has_no_path() -> None:
     error = f'Traceback\n  File "{FOLDER}/main.py", line 3\n' + "ValueError: " + "y" * 100_000
-    found = build_outcome(replace(DONE, end="raised", error=error, error_line=3), 3, FOLDER)
+    found = _build(replace(DONE, end="raised", error=error, error_line=3), 3)
     assert (
         found.error.startswith('Traceback\n  File "main.py", line 3\nValueError: y')
         and len(found.error) < 5000
@@ -76,8 +83,8 @@ def test_a_marked_runs_traceback_is_cut_and_has_no_path() -> None:
 
 def test_a_marked_runs_traceback_has_no_path_of_this_machine() -> None:
     library = f"cannot import name 'MoveTanks' from 'ev3dev2.motor' ({motor.__file__})"
-    found = build_outcome(
-        replace(DONE, end="raised", error="Traceback", summary=f"ImportError: {library}"), 0, FOLDER
+    found = _build(
+        replace(DONE, end="raised", error="Traceback", summary=f"ImportError: {library}"), 0
     )
     assert (
         found.failure
@@ -86,8 +93,8 @@ def test_a_marked_runs_traceback_has_no_path_of_this_machine() -> None:
 
 
 def test_a_path_written_by_the_student_stays_in_an_error() -> None:
-    found = build_outcome(
-        replace(DONE, end="raised", summary="FileNotFoundError: '/data/of/ada/x.csv'"), 0, FOLDER
+    found = _build(
+        replace(DONE, end="raised", summary="FileNotFoundError: '/data/of/ada/x.csv'"), 0
     )
     assert found.failure == "FileNotFoundError: '/data/of/ada/x.csv'"
 
@@ -103,7 +110,7 @@ def test_a_combined_goal_is_missed_with_the_reason_of_its_first_missed_part() ->
         _judgement(near, GoalState.MET),
         _judgement(finish, GoalState.MISSED, "It raised an exception.", 9),
     )
-    found = build_outcome(replace(DONE, judgements=judgements), 0, FOLDER)
+    found = _build(replace(DONE, judgements=judgements), 0)
     missed = (False, "It raised an exception.", 9)
     assert {goal.name: (goal.met, goal.reason, goal.line) for goal in found.goals} == {
         "every": missed,
@@ -118,7 +125,7 @@ def test_only_goals_that_a_sound_recording_decides_have_an_event() -> None:
     call = _judgement(Goal("call", UseCondition(("time.sleep",))), GoalState.MET)
     sound = replace(DONE, judgements=(near, call))
     events = [
-        [goal.event for goal in build_outcome(result, 0, FOLDER).goals]
+        [goal.event for goal in _build(result, 0).goals]
         for result in (sound, replace(sound, end="falsified"))
     ]
     assert events == [[near.event, None], [None, None]]

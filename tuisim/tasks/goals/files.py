@@ -44,7 +44,15 @@ from tuisim.tasks.goals.trial_world import TrialWorld, check_names, parse_other_
 MAX_NAME = 60
 _EXAMPLE = "_goals.toml"
 """The end of the file names of examples."""
-_TEXTS = ("name", "say", "hint")
+_VALUES: Mapping[str, Any] = {
+    "name": str,
+    "say": str,
+    "hint": str,
+    "points": Points,
+    "hidden": bool,
+    "within_s": Seconds,
+}
+"""The keys of a goal besides its condition and limits, with the types of their values."""
 _LIMITS = ("before", "after", "until")
 
 
@@ -275,11 +283,11 @@ def parse_goals(
 
 
 def _parse_goal(data: object, location: Location, folder: Path) -> Goal:
-    table = files.table(
-        data, location, (*_TEXTS, "points", "hidden", "within_s", *CONDITIONS, *_LIMITS)
-    )
+    table = files.table(data, location, (*_VALUES, *CONDITIONS, *_LIMITS))
     values: dict[str, Any] = {
-        key: files.convert(table[key], str, location.at(key)) for key in _TEXTS if key in table
+        key: files.convert(table[key], kind, location.at(key))
+        for key, kind in _VALUES.items()
+        if key in table
     }
     files.required(table, "name", location)
     if len(values["name"]) > MAX_NAME:
@@ -296,12 +304,6 @@ def _parse_goal(data: object, location: Location, folder: Path) -> Goal:
             "has no condition", f"one of {', '.join(CONDITIONS)}; {see_page('goal-files')}"
         )
     condition = conditions[0] if len(conditions) == 1 else Together(conditions)
-    if "points" in table:
-        values["points"] = files.convert(table["points"], Points, location.at("points"))
-    if "within_s" in table:
-        values["within_s"] = files.convert(table["within_s"], Seconds, location.at("within_s"))
-    if "hidden" in table:
-        values["hidden"] = files.convert(table["hidden"], bool, location.at("hidden"))
     values |= {
         limit: _parse_limit(table[limit], location.at(limit)) for limit in _LIMITS if limit in table
     }

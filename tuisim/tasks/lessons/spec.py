@@ -1,6 +1,6 @@
 """Lessons and their steps as frozen data.
 
-To add a kind of check: its class and a line in `CHECKS` here, and a case in `is_met` and `parse_event`, `events.py`.
+To add a kind of check: its class and a line in `CHECKS` here, and a case in `_passes` and `parse_event`, `events.py`.
 """
 
 from __future__ import annotations

@@ -114,16 +114,14 @@ class Outcome:
         )
 
 
-def build_outcome(
-    result: Result, seed: int, folder: Path, world: TrialWorld | None = None
-) -> Outcome:
+def build_outcome(result: Result, seed: int, folder: Path, world: TrialWorld) -> Outcome:
     """Return the outcome of a run from the result of its task.
 
     Args:
         result: The result of the task.
         seed: The seed of the task.
         folder: The folder in which the program ran; its path does not appear in the outcome.
-        world: The world of the run, in which only some goals may count; None for the first world.
+        world: The world of the run, in which only some goals may count.
     """
     failure = (
         "" if result.end == End.FINISHED and not result.exit_code else _describe_failure(result)
@@ -131,7 +129,7 @@ def build_outcome(
     judgements = {judgement.goal.name: judgement for judgement in result.judgements}
     goals = []
     for name, judgement in judgements.items():
-        if world is not None and name not in world.goals:
+        if name not in world.goals:
             continue
         state = judgement.state
         met = state is GoalState.MET
@@ -157,8 +155,8 @@ def build_outcome(
         result.time_s,
         tuple(goals),
         result.run_id,
-        world.where if world else "",
-        bool(world and world.hidden),
+        world.where,
+        world.hidden,
     )
 
 

@@ -195,19 +195,12 @@ def _list_verdicts(columns: Sequence[Goal], outcome: Outcome) -> tuple[Table, li
     pins = []
     for number, column in enumerate(columns, start=1):
         goal = goals.get(column.name, GoalOutcome(column.name, False, outcome.failure))
+        result, earned = "missed", 0.0
         if goal.is_unknown:
-            result = "could not be judged"
+            result, earned = "could not be judged", math.nan
         elif goal.met:
-            result = "met"
-        else:
-            result = "missed"
+            result, earned = "met", column.points
         why = f"{goal.reason} (line {goal.line})" if goal.line else goal.reason
-        if goal.is_unknown:
-            earned = math.nan
-        elif goal.met:
-            earned = column.points
-        else:
-            earned = 0
         points = f"{format_points(earned)} of {format_points(max(0, column.points))}"
         if (event := goal.event) is not None:
             result += f" at {event.time_s:.2f} s, x {event.x_mm:.0f}, y {event.y_mm:.0f} mm"
