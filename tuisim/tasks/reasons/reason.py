@@ -310,16 +310,19 @@ def _find_mistaken(data: RunData) -> Iterator[Reason]:
     from tuisim.tasks.reasons.unwatched import list_mistaken_turns
 
     for search in (
-        *(
-            cut_moves.list_cut_moves,
-            cut_moves.list_parted_moves,
-            list_mistaken_turns,
-            list_recounts,
-        ),
-        *(misuses.list_stale_reads, misuses.list_lone_stops, misuses.list_lost_values),
+        cut_moves.list_cut_moves,
+        cut_moves.list_parted_moves,
+        list_mistaken_turns,
+        list_recounts,
+        misuses.list_stale_reads,
+        misuses.list_lone_stops,
+        misuses.list_lost_values,
         misuses.list_stopping_loops,
-        *(named_aims.list_spins, named_aims.list_curves, named_aims.list_wrong_sides),
-        *(named_aims.list_wrong_bands, named_aims.list_wrong_units),
+        named_aims.list_spins,
+        named_aims.list_curves,
+        named_aims.list_wrong_sides,
+        named_aims.list_wrong_bands,
+        named_aims.list_wrong_units,
     ):
         if mistake := find_first(search, data):
             yield _build_reason(ReasonKind.MISTAKEN, mistake)

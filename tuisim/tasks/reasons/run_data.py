@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.commands.calls import Call
 from tuisim.engine.core.hub_spec import HUB_PORTS, INSIDE
-from tuisim.engine.core.profile import NS_PER_S, Library
+from tuisim.engine.core.profile import Library
 from tuisim.engine.core.spec import (
     ColorSensorSpec,
     GyroSpec,
@@ -120,8 +120,7 @@ class RunData:
     @cached_property
     def command_ticks(self) -> Array:
         """The tick of each row of `commands`, shape (n,)."""
-        ticks: Array = self.commands["time_ns"] * self.hz // NS_PER_S
-        return ticks
+        return find_ticks(self.commands, self.hz)
 
     @cached_property
     def stop_ticks(self) -> Array:
