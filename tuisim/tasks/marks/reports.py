@@ -156,9 +156,9 @@ def _compute_digest(run: StoredRun) -> str:
     """Return a hash of a run's recording, hexadecimal."""
     digest = hashlib.sha256(run.telemetry.array().tobytes())
     folder = run.program.working_directory.encode("utf-8", "surrogateescape")
-    for stream, row in run.output.read_raw_rows():
-        text = row.replace(folder, b"")
-        digest.update(b"%d %d " % (stream, len(text)) + text)
+    for row in run.output.rows():
+        text = row.text.encode().replace(folder, b"")
+        digest.update(b"%d %d " % (row.stream, len(text)) + text)
     return digest.hexdigest()
 
 
