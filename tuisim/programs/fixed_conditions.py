@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import ast
 import re
-from collections import Counter, defaultdict
+from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import combinations, islice, pairwise, product
 from math import prod
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.conditions import COMPARE
-from tuisim.programs.comparisons import find_constant, is_set, split_comparison
+from tuisim.programs.comparisons import find_constant, find_values, split_comparison
 from tuisim.programs.pure_expressions import has_effect, is_reading
 from tuisim.programs.questions import Word
 
@@ -54,7 +54,7 @@ def list_fixed_conditions(
     nodes = [*ast.walk(tree)]
     for lines in (
         _list_lone_words(nodes),
-        _list_lone_names(nodes),
+        _list_lone_names(tree),
         _list_fixed(nodes, constants),
         _list_unreached(nodes, constants),
     ):
@@ -280,20 +280,21 @@ _NUMBERS = re.compile(r"reflect|distance|angle|ambient|heading")
 _SENSORS = ("colorLeft", "colorRight", "ultrasonic", "gyro")
 
 
-def _list_lone_names(nodes: Sequence[ast.AST]) -> Iterator[tuple[int, str]]:
+def _list_lone_names(tree: ast.Module) -> Iterator[tuple[int, str]]:
     """Yield the lines in which a sensor or a reading stands alone beside a comparison, such as `left and right < 9`.
 
     Each line comes with a description, which says what to write: here `left < 9`.
     """
-    sources = _find_sources(nodes)
-    for node in nodes:
+    for node in ast.walk(tree):
         match node:
-            case ast.BoolOp(values=[ast.Name(id=name), *parts]) if sources.get(name):
+            case ast.BoolOp(values=[ast.Name(id=name), *parts]) if source := _find_source(
+                name, tree
+            ):
                 for part in parts:
                     match part:
                         case ast.Compare(
                             left=ast.Name(id=other) | ast.Attribute(value=ast.Name(id=other))
-                        ) if other != name and sources.get(other) == sources[name]:
+                        ) if other != name and _find_source(other, tree) == source:
                             question = re.sub(rf"\b{other}\b", name, ast.unparse(part), count=1)
                             text = (
                                 f"{name} alone is no comparison, and mostly true: write {question}"
@@ -301,33 +302,28 @@ def _list_lone_names(nodes: Sequence[ast.AST]) -> Iterator[tuple[int, str]]:
                             yield node.lineno, text
 
 
-def _find_sources(nodes: Sequence[ast.AST]) -> dict[str, str]:
-    """Return what each variable always holds, by the variable's name.
+def _find_source(name: str, tree: ast.Module) -> str:
+    """Return what a variable always holds, by its assignments.
 
     The text is `Sensor` for a sensor, or the name of the method or property from which a number is read, such as
     `distance`. It is empty for a variable that may hold anything else.
     """
-    sources = dict.fromkeys(_SENSORS, "Sensor")
-    values: dict[str, list[str]] = defaultdict(list)
-    stores = Counter(
-        [
-            *(node.id for node in nodes if isinstance(node, ast.Name) and is_set(node)),
-            *(node.arg for node in nodes if isinstance(node, ast.arg)),
-        ]
-    )
-    for node in nodes:
-        match node:
-            case ast.Assign(targets=[ast.Name(id=name)], value=value):
-                call = value.func if isinstance(value, ast.Call) else value
-                word = ast.unparse(call).rpartition(".")[2]
-                is_sensor = call is not value and word.endswith("Sensor")
-                is_number = isinstance(call, ast.Attribute) and _NUMBERS.search(word)
-                values[name].append("Sensor" if is_sensor else word if is_number else "")
-    for name, count in stores.items():
-        words = {*values[name]}
-        is_known = len(values[name]) == count and len(words) == 1
-        sources[name] = words.pop() if is_known else ""
-    return sources
+    if any(isinstance(node, ast.arg) and node.arg == name for node in ast.walk(tree)):
+        return ""
+    words = {_name_source(value) for _, value in find_values(name, tree)}
+    if not words and name in _SENSORS:
+        return "Sensor"
+    return words.pop() if len(words) == 1 else ""
+
+
+def _name_source(value: ast.expr) -> str:
+    """Return `Sensor` for an expression that creates a sensor, or the method or property that it reads; else empty."""
+    match value:
+        case ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name)) if name.endswith("Sensor"):
+            return "Sensor"
+        case ast.Call(func=ast.Attribute(attr=name)) | ast.Attribute(attr=name):
+            return name if _NUMBERS.search(name) else ""
+    return ""
 
 
 def _get_kind(node: ast.expr) -> str:

@@ -11,7 +11,8 @@ from tuisim.programs.comparisons import is_set
 from tuisim.programs.moves import ANY_MOVE, STOPS
 from tuisim.programs.pure_expressions import READ_METHODS
 from tuisim.programs.questions import COLOR_WORDS
-from tuisim.programs.wrong_calls import explain_call
+from tuisim.programs.statements import list_blocks, name_call
+from tuisim.programs.wrong_calls import explain_call, find_makers
 
 
 def find_fault(text: str) -> tuple[str, int] | None:
@@ -356,12 +357,8 @@ def _find_short_wait(tree: ast.Module) -> tuple[int, str] | None:
 
     Only a `wait` between the start and the stop of a motor is considered.
     """
-    for node in ast.walk(tree):
-        block = getattr(node, "body", [])
-        calls = [
-            getattr(step, "value", None) for step in (block if isinstance(block, list) else [])
-        ]
-        calls = [call for call in calls if not _is_print(call)]
+    for block in list_blocks(tree):
+        calls = [getattr(step, "value", None) for step in block if name_call(step) != "print"]
         for three in zip(calls, calls[1:], calls[2:], strict=False):
             match three:
                 case (
@@ -384,19 +381,10 @@ def _find_colour_text(tree: ast.Module) -> tuple[int, str] | None:
     """
     nodes = [*ast.walk(tree)]
     waits = [node.test for node in nodes if isinstance(node, ast.While)]
-    stored = {node.id for node in nodes if isinstance(node, ast.Name) and is_set(node)}
-    eyes = {"colorLeft", "colorRight"} - stored
-    for node in nodes:
-        match node:
-            case ast.Assign(targets=[target], value=ast.Call(func=func)) if (
-                _name_function(func) == "ColorSensor"
-            ):
-                eyes.add(ast.unparse(target))
+    eyes = find_makers(tree, ("ColorSensor",))
     lines: list[tuple[int, str]] = []
     for node in nodes:
         match node:
-            case ast.ClassDef(name="ColorSensor"):
-                return None
             case ast.Compare(
                 left=ast.Attribute(value=eye, attr="color")
                 | ast.Call(func=ast.Attribute(value=eye, attr="color"), args=[]) as color,
@@ -412,10 +400,3 @@ def _find_colour_text(tree: ast.Module) -> tuple[int, str] | None:
                     words = f"a text equals no colour: write Color.{text.upper()}"
                 lines.append((node.lineno, words))
     return min(lines, default=None)
-
-
-def _is_print(call: ast.expr | None) -> bool:
-    match call:
-        case ast.Call(func=ast.Name(id="print") | ast.Attribute(attr="print")):
-            return True
-    return False

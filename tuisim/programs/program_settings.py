@@ -327,9 +327,9 @@ def decide(
         layer |= _decide_ground(facts, free)
     needed = facts.robot.choice if facts.robot else None
     words = _describe_decision(source, facts, layer, free)
-    unseen_parts = _find_shown(facts, free)
+    shown_ports = facts.shown_ports if "robot" in free else None
     return Decided(
-        layer, *words, needed, unseen_parts, frozenset(free), _find_refused(facts, profile)
+        layer, *words, needed, shown_ports, frozenset(free), _find_refused(facts, profile)
     )
 
 
@@ -359,18 +359,6 @@ def _find_refused(facts: SourceFacts, profile: str | ProfileSpec) -> tuple[Refus
 
     is_later = _find_law(profile) is MotorLaw.PYBRICKS_4
     return tuple(line for line in facts.refused if (line.what in MISSING) == is_later)
-
-
-def _find_shown(facts: SourceFacts, free: Collection[str]) -> tuple[str, ...] | None:
-    """Return the ports for which the text of the program shows what is plugged in.
-
-    The result is None if the user has chosen a robot, or if the program does not import its library.
-
-    Args:
-        facts: The facts in the source of the program.
-        free: The paths of the settings that the user has not chosen.
-    """
-    return facts.shown_ports if "robot" in free else None
 
 
 def _check_prelude(program: Program) -> None:

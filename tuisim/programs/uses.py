@@ -13,7 +13,7 @@ from tuisim.programs.line_values import walk_scope
 from tuisim.programs.moves import STARTS, STOPS
 from tuisim.programs.questions import Word
 from tuisim.programs.statements import find_call, list_blocks
-from tuisim.programs.waits import LoopEnd
+from tuisim.programs.waits import LoopEnd, has_exit
 
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
 _Loop = ast.For | ast.While
@@ -97,19 +97,9 @@ def _find_read(value: ast.expr, loop: _Loop, name: str) -> str:
     match value, loop:
         case ast.Compare(left=left, comparators=[right]), ast.While(test=test) if _is_truth(
             test, name
-        ) and not any(map(_is_leave, ast.walk(loop))):
+        ) and not has_exit(loop):
             return find_attribute(left) or find_attribute(right)
     return find_attribute(value)
-
-
-def _is_leave(node: ast.AST) -> bool:
-    """Return whether a node may leave a loop."""
-    match node:
-        case ast.Break() | ast.Return() | ast.Raise():
-            return True
-        case ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name)):
-            return name.endswith(("exit", "quit"))
-    return False
 
 
 def _is_reaction(node: ast.AST) -> bool:

@@ -241,7 +241,7 @@ def _build_end(
             is_count = _is_short(words.get(name), ending, limit)
             set_line = values[-1][0] if is_count or find_attribute(values[-1][1]) else 0
     attribute = find_attribute(value)
-    if not attribute and (not set_line or _has_exit(loop)):
+    if not attribute and (not set_line or has_exit(loop)):
         return None
     lines = test.lineno, loop.lineno, _find_last_line(loop)
     called_lines = tuple(_list_called(loop, tree)) if is_count else ()
@@ -274,7 +274,7 @@ def _list_called(loop: _Loop, tree: ast.Module) -> Iterator[int]:
             yield node.lineno
 
 
-def _has_exit(loop: _Loop) -> bool:
+def has_exit(loop: _Loop) -> bool:
     """Return whether something else than a loop's condition can end it, such as a `break` or a call of `exit`."""
     return any(map(_is_exit, ast.walk(loop)))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import NamedTuple
 
 from tuisim.base.data_class import dataclass
@@ -118,11 +118,17 @@ class Maker(NamedTuple):
     """As text; two pairs with the same motors have the same text."""
 
 
-def find_makers(tree: ast.Module) -> dict[str, Maker]:
-    """Return how the motors and pairs of motors are created, by the name of the variable or attribute."""
+def find_makers(tree: ast.Module, classes: Collection[str] = _SPEEDS) -> dict[str, Maker]:
+    """Return how a program creates its devices, by the name of the variable or attribute.
+
+    Args:
+        tree: The program.
+        classes: The classes of the devices: by default those of motors and pairs of motors.
+    """
     makers = {
         name: Maker(class_name, "OUTPUT_B, OUTPUT_C") for name, class_name in _PREDEFINED.items()
     }
+    makers |= dict.fromkeys(("colorLeft", "colorRight"), Maker("ColorSensor", ""))
     own = set[str]()
     for node in ast.walk(tree):
         match node:
@@ -136,7 +142,7 @@ def find_makers(tree: ast.Module) -> dict[str, Maker]:
     return {
         name: maker
         for name, maker in makers.items()
-        if maker.class_name in _SPEEDS and maker.class_name not in own
+        if maker.class_name in classes and maker.class_name not in own
     }
 
 

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import ast
-import re
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
-from tuisim.programs.robot.library import DeviceKind
+from tuisim.engine.core.spec import OUTPUT_PORTS
+from tuisim.programs.robot.library import DeviceKind, parse_port
 from tuisim.programs.robot.mentions import Mention, Mentions, Where
 from tuisim.programs.robot.source import Module
-
-_PORT = re.compile(r"(?:ev3-ports:)?(out[A-D])")
 
 
 def add_port_texts(mentions: Mentions, modules: Iterable[Module]) -> Mentions:
@@ -35,6 +33,6 @@ def _find_motors(module: Module) -> Iterator[Mention]:
         match node:
             case ast.Assign(targets=[ast.Name(id=name)], value=value):
                 names |= dict.fromkeys(ast.walk(value), (name,))
-            case ast.Constant(value=str(text)) if match := _PORT.fullmatch(text):
+            case ast.Constant(value=str(text)) if (port := parse_port(text)) in OUTPUT_PORTS:
                 where = Where(module.file, node.lineno)
-                yield Mention(DeviceKind.MOTOR, match[1], where, names.get(node, ()))
+                yield Mention(DeviceKind.MOTOR, port, where, names.get(node, ()))
