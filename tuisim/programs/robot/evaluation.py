@@ -164,8 +164,6 @@ class Evaluation:
                 yield from self.attribute(own, name)
             if f"{module}.{name}" in self.modules:
                 yield SourceModule(f"{module}.{name}")
-            elif not module and name in self.modules:
-                yield SourceModule(name)
         finally:
             self._open.discard(key)
 
@@ -191,10 +189,6 @@ class Evaluation:
                 yield from self._read_class(scope, name, is_bound=False)
             case Instance(of=OwnClass(scope=scope), call=call):
                 yield from _add_call(call, self._read_class(scope, name, is_bound=True))
-            case Parent(of=scope):
-                for base in self.bases(scope):
-                    if isinstance(base, OwnClass):
-                        yield from self._read_class(base.scope, name, is_bound=True)
             case LibraryClass(name=enumeration) if name in library.MEMBERS.get(enumeration, ()):
                 yield library.MEMBERS[enumeration][name]
             case Instance(of=LibraryClass()) | LibraryClass() if name in library.CONSTANTS:
@@ -216,8 +210,6 @@ class Evaluation:
             for base in self.bases(scope):
                 if isinstance(base, OwnClass):
                     yield from self._read_class(base.scope, name, is_bound=is_bound)
-                elif isinstance(base, LibraryClass):
-                    yield from self.attribute(base, name)
 
     def bases(self, scope: Scope) -> list[Value]:
         """Return the possible values of the base classes of a class, which is given by its scope."""
@@ -259,10 +251,7 @@ class Evaluation:
         if isinstance(value, SourceCollection):
             keys = [key for key in value.keys if key is not None]
             for item in keys or value.items:
-                for inside in self.values(item, value.scope):
-                    yield from (
-                        self._list_items(inside) if isinstance(item, ast.Starred) else (inside,)
-                    )
+                yield from self.values(item, value.scope)
 
     def _pick(self, value: Value, index: int) -> Iterator[Value]:
         if isinstance(value, SourceCollection) and not value.keys:
@@ -275,14 +264,8 @@ class Evaluation:
     def _read_item(self, base: ast.expr, index: ast.expr, scope: Scope) -> Iterator[Value]:
         keys = self.values(index, scope)
         for value in self.values(base, scope):
-            match value:
-                case SourceCollection():
-                    yield from self.look_up(value, keys)
-                case OwnClass(scope=inner):
-                    # A subscript of an enumeration selects a member by name.
-                    for name in keys:
-                        if isinstance(name, str):
-                            yield from self._read_class(inner, name, is_bound=False)
+            if isinstance(value, SourceCollection):
+                yield from self.look_up(value, keys)
 
     def look_up(self, table: SourceCollection, wanted_keys: Sequence[Value]) -> Iterator[Value]:
         """Yield the values that `table[key]` can have for each of some possible keys; all items if no key is known."""

@@ -300,8 +300,6 @@ class _Reader:
                             self._note_hint(value, key.value)
                 case ast.keyword(arg=str(name), value=value):
                     self._note_hint(value, name)
-                case ast.Return(value=ast.expr() as value) if isinstance(scope.node, FUNCTIONS):
-                    self._note_hint(value, scope.node.name)
         for function, calls in self.evaluation.calls.items():
             for call in calls:
                 if call.scope is scope:
@@ -326,12 +324,6 @@ class _Reader:
         if name not in (known := self.hints.setdefault(value, [])):
             known.append(name)
         match value:
-            case ast.IfExp(body=one, orelse=other):
-                self._note_hint(one, name)
-                self._note_hint(other, name)
-            case ast.BoolOp(values=parts):
-                for part in parts:
-                    self._note_hint(part, name)
             case ast.Call(args=args):
                 # In `elbow = Joint(LargeMotor(OUTPUT_B))`, the motor gets the name of the object that it is a part of.
                 parts = [part for part in args if part in self.parts]
