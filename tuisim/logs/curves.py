@@ -106,15 +106,11 @@ def _find_treads(signal: Signal, plateaus: PlateauArray) -> BoolArray:
     spans = read_spans(plateaus)
     lengths = count_samples(spans)
     last = len(signal.values) - 1
-    rises = np.stack(
-        [
-            side * (signal.values[np.clip(place, 0, last)] - plateaus["level"])
-            for side, place in ((-1, spans[:, 0] - lengths), (1, spans[:, 1] + lengths - 1))
-        ]
-    )
+    before = signal.values[np.maximum(spans[:, 0] - lengths, 0)] - plateaus["level"]
+    after = signal.values[np.minimum(spans[:, 1] + lengths - 1, last)] - plateaus["level"]
     is_flat = plateaus["spread"] < tread / 2.0
-    gentle = is_flat & (np.abs(rises).max(axis=0) < _TREAD_RISE * tread)
-    inner = gentle & (rises[0] * rises[1] > 0.0)
+    gentle = is_flat & (np.maximum(np.abs(before), np.abs(after)) < _TREAD_RISE * tread)
+    inner = gentle & (before * after < 0.0)
     for start, stop in find_spans(inner).tolist():
         if stop - start >= _MIN_TREADS:
             treads[max(start - 1, 0) : stop + 1] = gentle[max(start - 1, 0) : stop + 1]
