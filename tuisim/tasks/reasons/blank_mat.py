@@ -5,8 +5,9 @@ from __future__ import annotations
 from tuisim.engine.core.spec import EMPTY_MAT
 from tuisim.engine.protocol import End
 from tuisim.tasks.reasons.run_data import RunData
-from tuisim.tasks.reasons.waited_words import GIVES_LINE
 
+GIVES_LINE = "-b Loop gives it a line (tuisim backgrounds)"
+"""The remedy for a program that looks for a line on the plain mat."""
 _MIN_READINGS = 20
 """The least number of light readings of a program that looks for something."""
 _LOST_LINE = "LineFollowErrorLostLine"

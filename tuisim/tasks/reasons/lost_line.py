@@ -17,9 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tuisim.base.data_class import dataclass
-from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, ColorSensorSpec
-from tuisim.engine.runs.arrays import compute_world_points_mm, find_spans
-from tuisim.tasks.reasons.run_data import RunData, compute_turns_deg
+from tuisim.engine.core.spec import ColorSensorSpec
+from tuisim.engine.runs.arrays import find_spans
+from tuisim.tasks.reasons.run_data import RunData, compute_turns_deg, is_on_mat
 
 if TYPE_CHECKING:
     Array = NDArray[Any]
@@ -205,15 +205,6 @@ def _turns_away(
     towards_deg = towards_deg[towards_deg != 0]
     is_away = towards_deg < 0
     return len(is_away) >= _MIN_AWAY and bool(is_away.mean() >= _MIN_AWAY_SHARE)
-
-
-def is_on_mat(records: Array, sensor: ColorSensorSpec) -> Bools:
-    """Return for each tick whether the whole spot that a sensor sees is on the mat, shape (n,)."""
-    x_mm, y_mm = compute_world_points_mm(records, sensor.x_mm, sensor.y_mm)
-    edge_mm = sensor.diameter_mm / 2
-    in_width = (x_mm >= edge_mm) & (x_mm <= FIELD_WIDTH_MM - edge_mm)
-    is_on: Bools = in_width & (y_mm >= edge_mm) & (y_mm <= FIELD_HEIGHT_MM - edge_mm)
-    return is_on
 
 
 def _measure_percent(data: RunData, sensor: ColorSensorSpec, records: Array) -> Array:

@@ -11,8 +11,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.engine.core.columns import COLOR_NAMES
 from tuisim.engine.core.sensors.color import WHITE_CODE, find_color_code, find_response
 from tuisim.programs.facts import LoopEnd
-from tuisim.tasks.reasons.lost_line import is_on_mat
-from tuisim.tasks.reasons.run_data import RunData
+from tuisim.tasks.reasons.run_data import RunData, is_on_mat
 
 if TYPE_CHECKING:
     from tuisim.engine.core.spec import ColorSensorSpec, RunSpec

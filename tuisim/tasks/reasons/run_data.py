@@ -12,6 +12,8 @@ from tuisim.engine.core.commands.calls import Call
 from tuisim.engine.core.hub_spec import HUB_PORTS, INSIDE
 from tuisim.engine.core.profile import Library
 from tuisim.engine.core.spec import (
+    FIELD_HEIGHT_MM,
+    FIELD_WIDTH_MM,
     ColorSensorSpec,
     GyroSpec,
     InfraredSpec,
@@ -19,6 +21,7 @@ from tuisim.engine.core.spec import (
     UltrasonicSpec,
 )
 from tuisim.engine.protocol import End
+from tuisim.engine.runs.arrays import compute_world_points_mm
 from tuisim.engine.runs.frames import compute_column_values
 from tuisim.engine.runs.readings import (
     MODES_BY_KIND,
@@ -378,3 +381,12 @@ def compute_turns_deg(records: Array) -> Array:
 def describe_place(port: str) -> str:
     """Return where a sensor is in words, such as `on in1`."""
     return "in the hub" if port == INSIDE else f"on {port}"
+
+
+def is_on_mat(records: Array, sensor: ColorSensorSpec) -> Array:
+    """Return for each tick whether the whole spot that a sensor sees is on the mat, shape (n,)."""
+    x_mm, y_mm = compute_world_points_mm(records, sensor.x_mm, sensor.y_mm)
+    edge_mm = sensor.diameter_mm / 2
+    in_width = (x_mm >= edge_mm) & (x_mm <= FIELD_WIDTH_MM - edge_mm)
+    is_on: Array = in_width & (y_mm >= edge_mm) & (y_mm <= FIELD_HEIGHT_MM - edge_mm)
+    return is_on

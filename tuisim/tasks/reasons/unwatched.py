@@ -13,8 +13,8 @@ from tuisim.engine.core.conditions import COMPARE
 from tuisim.engine.core.sensors.color import WHITE, LightRead, find_color_code
 from tuisim.programs.facts import ProgramThreshold
 from tuisim.programs.moves import WheelTurn
-from tuisim.tasks.reasons.lost_line import MIN_READINGS, is_on_mat
-from tuisim.tasks.reasons.run_data import RunData, compute_turns_deg, list_distinct
+from tuisim.tasks.reasons.lost_line import MIN_READINGS
+from tuisim.tasks.reasons.run_data import RunData, compute_turns_deg, is_on_mat, list_distinct
 from tuisim.tasks.reasons.unmet import Unmet
 
 if TYPE_CHECKING:

@@ -17,6 +17,7 @@ from tuisim.engine.core.spec import EMPTY_MAT, InfraredSpec, RunSpec, Ultrasonic
 from tuisim.engine.obstacles import OBSTACLES
 from tuisim.engine.runs.readings import BUTTONS_PORT, HUB_BUTTONS_PORT, KEYS_BY_PORT
 from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.tasks.reasons.blank_mat import GIVES_LINE
 from tuisim.tasks.reasons.hand_presses import find_hits
 from tuisim.tasks.reasons.run_data import RunData, describe_place
 from tuisim.tasks.reasons.subjects import SEEN, Subject
@@ -26,8 +27,6 @@ from tuisim.tasks.reasons.waited import Awaited, find_awaited, find_sensor
 COLORED_MAT = "Rainbow_bands"
 COLOR_PLACES_MM: Mapping[str, int] = {"red": 240, "green": 440, "blue": 740, "yellow": 1245}
 """Where on that mat, in x, a robot looks at a colour."""
-GIVES_LINE = "-b Loop gives it a line (tuisim backgrounds)"
-"""The remedy for a program that looks for a line on the plain mat."""
 _KEYS = {"up": "↑", "down": "↓", "left": "←", "right": "→"}
 _OWNERS = {
     BUTTONS_PORT: "the brick's",
