@@ -9,7 +9,7 @@ import pytest
 
 from tests.engine.core.driver.lab import MS, give
 from tuisim.engine.core.driver.jiffies import JIFFY_US, STEP_US, Jiffies, round_up
-from tuisim.engine.core.driver.motor import Command, DriverMotor, State
+from tuisim.engine.core.driver.motor import STATES, Command, DriverMotor
 from tuisim.engine.core.driver.plant import NS_PER_S, STEP_NS
 from tuisim.engine.core.driver.regulator import MODELS, StopAction
 from tuisim.engine.core.driver.simulated import load_wheel
@@ -210,7 +210,7 @@ def stop_wheel(speed_dps: int, action: StopAction, duration_s: float) -> list[fl
     give(wheel, 2000 * MS, Command.STOP, stop_action=action)
     target_deg = before_deg
     if action is StopAction.HOLD:
-        assert State.HOLDING in wheel.states
+        assert "holding" in STATES[wheel.state_bits]
         target_deg = float(wheel.position)
     return [angle_deg - target_deg for angle_deg in watch(wheel, 2, 2 + duration_s)]
 

@@ -182,9 +182,12 @@ class BrickMotor:
     @property
     def ramp_step(self) -> float:
         """Largest change of the motor's speed in one tick, in degrees per second; 0 is unlimited."""
-        if not self.slowest_ramp_dps2:
-            return self._weight_step
-        limit_dps = self.slowest_ramp_dps2 * self._tick_s
+        slowest_dps2 = self.slowest_ramp_dps2
+        return self._limit_step(slowest_dps2) if slowest_dps2 else self._weight_step
+
+    def _limit_step(self, most_dps2: float) -> float:
+        """Return the largest change of speed in one tick that an acceleration and the robot's weight allow."""
+        limit_dps = most_dps2 * self._tick_s
         return min(self._weight_step, limit_dps) if self._weight_step else limit_dps
 
     @property
@@ -214,9 +217,7 @@ class BrickMotor:
         sign = self.sign
         tick_s = self._tick_s
         turns = [speed * sign * tick_s for speed in self._advance_speeds(ticks)]
-        counts = list(accumulate(turns, initial=self.position_deg))
-        self.position_deg = counts[-1]
-        return Glide(turns, counts[1:])
+        return self._roll(turns)
 
     def glide_noisily(self, ticks: int, noise_dps: Sequence[float]) -> Glide:
         """Advance the motor by several ticks as `glide` does, with noise added to its speed; return how it moves.
@@ -244,6 +245,10 @@ class BrickMotor:
         if max(noisy) > limit or min(noisy) < -limit:
             noisy = [max(-limit, min(limit, turn_dps)) for turn_dps in noisy]
         turns = [turn_dps * sign * tick_s for turn_dps in noisy]
+        return self._roll(turns)
+
+    def _roll(self, turns: list[float]) -> Glide:
+        """Turn the motor by an angle in each of several ticks."""
         counts = list(accumulate(turns, initial=self.position_deg))
         self.position_deg = counts[-1]
         return Glide(turns, counts[1:])
@@ -313,7 +318,7 @@ class BrickMotor:
 
     def _slow_down(self, tick: int) -> None:
         """Limit the speed so that the motor can stop at its goal or at its end time."""
-        change = self._ramp_down_step
+        change = self._limit_step(self.approach_dps2)
         if self.mode == TIMED:
             limit = change * max(0, self.end_tick - tick)
         else:
@@ -322,12 +327,6 @@ class BrickMotor:
             limit = math.sqrt(half * half + 2 * change * left / self._tick_s) - half
         if abs(self.speed_dps) > limit:
             self.speed_dps = math.copysign(limit, self.speed_dps)
-
-    @property
-    def _ramp_down_step(self) -> float:
-        """Decrease of the speed in one tick before the motor's goal or end time, in degrees per second."""
-        limit_dps = self.approach_dps2 * self._tick_s
-        return min(self._weight_step, limit_dps) if self._weight_step else limit_dps
 
     def _step_to_goal(self, turned: float) -> float:
         left = (self.goal_deg - self.position_deg) * self.sign

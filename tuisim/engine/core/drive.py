@@ -11,7 +11,7 @@ import math
 from collections.abc import Iterator
 from math import cos, degrees, radians, sin
 from struct import Struct
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple
 
 from tuisim.engine.core.tick_record import POSITION_FIELDS, TICK_RECORD, Buffer
 
@@ -106,26 +106,6 @@ class EvenGlide(NamedTuple):
     """Encoder position after each tick, in degrees."""
 
 
-class Drive(Protocol):
-    """The interface of `BrickDrive` and `BrowserDrive`: the robot's pose, and how its wheels change it."""
-
-    x_mm: float
-    y_mm: float
-    heading_deg: float
-    gyro_zero_deg: float
-    """Heading at which the gyro reads 0."""
-
-    def put(self, pose: Pose) -> None: ...
-
-    def roll(self, left_deg: float, right_deg: float) -> None: ...
-
-    def glide(self, records: Records, left: Glide, right: Glide) -> None: ...
-
-    def glide_evenly(
-        self, records: Records, left: EvenGlide, right: EvenGlide
-    ) -> tuple[float, float]: ...
-
-
 def _glide_straight(
     drive: Drive, forward_mm: float, way: float, records: Records, left: EvenGlide, right: EvenGlide
 ) -> tuple[float, float]:
@@ -183,6 +163,7 @@ class BrickDrive:
         self.y_mm = start.y_mm
         self.heading_deg = start.heading_deg
         self.gyro_zero_deg = round_to_float32(start.heading_deg)
+        """Heading at which the gyro reads 0."""
 
     def put(self, pose: Pose) -> None:
         """Set the robot's pose, such as after a user has moved the robot."""
@@ -441,3 +422,7 @@ class BrowserDrive:
         self._heading = heading
         self.heading_deg = heading * 180.0 / pi
         return left_at, right_at
+
+
+Drive = BrickDrive | BrowserDrive
+"""The robot's pose, and how its wheels change it."""

@@ -262,18 +262,21 @@ class Motion:
         self._motor_recorder.record(count, ticks)
         self._sink.publish(count + ticks)
 
+    def compute_due_ns(self, tick: int) -> int:
+        """Return when a tick is due, in ns from the start; the same as `profile.compute_due_ns`, but faster."""
+        return -(-tick * NS_PER_S // self._hz)
+
     def find_next_change_ns(self, now_ns: int) -> int:
         """Return when a program can next notice a change of a motor, in ns.
 
         It is the end of the current tick, or the next check of a motor's driver if that comes earlier.
         """
-        ends_ns = -(-(self.tick + 1) * NS_PER_S // self._hz)
         looks_ns = [motor.next_look_ns for motor in self._driven if motor.next_look_ns > now_ns]
-        return min([ends_ns, *looks_ns])
+        return min([self.compute_due_ns(self.tick + 1), *looks_ns])
 
     def notice_change(self) -> bool:
         """Run the drivers' checks up to the end of the next tick; return whether one has noticed a change."""
-        end_ns = -(-(self.tick + 1) * NS_PER_S // self._hz)
+        end_ns = self.compute_due_ns(self.tick + 1)
         for motor in self._driven:
             if motor.next_look_ns <= end_ns:
                 motor.run_until(motor.find_last_look_ns(end_ns))

@@ -82,10 +82,6 @@ class Simulation(Motion):
 
     # Reading
 
-    def compute_due_ns(self, tick: int) -> int:
-        """Return when a tick is due, in ns from the start; the same as `profile.compute_due_ns`, but faster."""
-        return -(-tick * NS_PER_S // self._hz)
-
     def count_ticks(self, time_ns: int) -> int:
         """Return the number of ticks that are due at a time in ns from the start."""
         return time_ns * self._hz // NS_PER_S

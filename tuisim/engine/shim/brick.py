@@ -163,11 +163,6 @@ class LegoPort:
             )
 
 
-def all_ports(session: DeviceSession) -> list[SimDevice]:
-    """Return all ports of the brick as devices, inputs first."""
-    return [LegoPort(session, port).device() for port in (*INPUT_PORTS, *OUTPUT_PORTS)]
-
-
 def ports_hint(session: DeviceSession, class_name: str) -> str:
     """Return a hint for the error about a missing motor or sensor: which motors or sensors the robot has, by port.
 
@@ -268,8 +263,8 @@ def build_brick(session: DeviceSession) -> BuiltBrick:
     built.take_wheels()
     for spec in sorted(robot.sensors, key=lambda found: found.port):
         built.connect_sensor(spec)
-    for at, socket in enumerate(all_ports(session)):
-        brick.add(PORT_CLASS, f"port{at}", socket)
+    for port in (*INPUT_PORTS, *OUTPUT_PORTS):
+        brick.add_numbered(PORT_CLASS, "port", LegoPort(session, port).device())
     for name, light in built.lights.lights.items():
         brick.add(LED_CLASS, led_name(name), light.device())
     brick.add(POWER_CLASS, BATTERY, built.battery.device())

@@ -56,9 +56,7 @@ KINDS = {
 class Tacho(ABC):
     """The driver of one motor on an output port, such as `outB`; the motor's kind is one of `KINDS`."""
 
-    def __init__(
-        self, session: DeviceSession, motor: Motor, port: str, kind: str = "large"
-    ) -> None:
+    def __init__(self, session: DeviceSession, motor: Motor, port: str, kind: str) -> None:
         self._session = session
         self._port = port
         self._kind = KINDS[kind]

@@ -14,17 +14,9 @@ from tuisim.engine.shim.pybricks.micropython import OF_PYTHON, MicroPythonFinder
 from tuisim.engine.shim.session import DeviceSession
 
 
-def _finish_asyncio(module: types.ModuleType) -> None:
-    vars(module)["coroutine"] = types.coroutine
-
-
 def _finish_collections(module: types.ModuleType) -> None:
     for name in collections.abc.__all__:
         vars(module).setdefault(name, getattr(collections.abc, name))
-
-
-def _finish_fractions(module: types.ModuleType) -> None:
-    vars(module)["gcd"] = math.gcd
 
 
 def _finish_threading(module: types.ModuleType) -> None:
@@ -33,9 +25,9 @@ def _finish_threading(module: types.ModuleType) -> None:
 
 
 FINISHERS: Mapping[str, Callable[[types.ModuleType], None]] = {
-    "asyncio": _finish_asyncio,
+    "asyncio": lambda module: vars(module).update(coroutine=types.coroutine),
     "collections": _finish_collections,
-    "fractions": _finish_fractions,
+    "fractions": lambda module: vars(module).update(gcd=math.gcd),
     "threading": _finish_threading,
 }
 """Functions that add the names of Python 3.5 to a module after its import, by the module's name."""
