@@ -7,9 +7,12 @@ from dataclasses import replace
 import pytest
 
 from tests.cases import for_rows
+from tests.programs.robot.reading import HEAD
 from tuisim.base.source import Program
 from tuisim.engine.core.sensors.color import LightRead
 from tuisim.engine.core.spec import RobotSpec
+from tuisim.programs.facts import read_facts
+from tuisim.programs.program_settings import read_source_facts
 from tuisim.programs.robot.thresholds import (
     find_light_read,
     find_light_reads,
@@ -122,3 +125,11 @@ def test_the_light_value_that_the_program_reads_is_found_for_each_sensor() -> No
     assert find_light_reads(compared, RobotSpec())["left"] is LightRead.MEAN
     unread = find_light_reads(replace(program, text="print(eye.reflection())"), RobotSpec())
     assert set(unread.values()) == {LightRead.REFLECTION}
+
+
+def test_a_sensor_has_the_name_of_the_function_that_makes_it() -> None:
+    text = f"{HEAD}def floor(number):\n    return ColorSensor('in%d' % number)\nfloor(1)\n"
+    program = Program("p.py", text)
+    robot = read_source_facts(program).robot
+    assert robot is not None
+    assert read_facts(program).find_sensor_names(robot.choice.spec) == {"in1": "floor"}

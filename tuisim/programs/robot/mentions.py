@@ -300,6 +300,8 @@ class _Reader:
                             self._note_hint(value, key.value)
                 case ast.keyword(arg=str(name), value=value):
                     self._note_hint(value, name)
+                case ast.Return(value=ast.expr() as value) if isinstance(scope.node, FUNCTIONS):
+                    self._note_hint(value, scope.node.name)
         for function, calls in self.evaluation.calls.items():
             for call in calls:
                 if call.scope is scope:
