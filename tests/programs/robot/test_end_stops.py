@@ -34,6 +34,21 @@ RANGES: Mapping[str, tuple[str, tuple[float, float]]] = {
         (-225.0, 195.0),
     ),
     "a turn after the stop": (f"{_HOME}arm.run_angle(500, -300)\n", (-345.0, 45.0)),
+    "a stop in a function that is called later": (
+        "def home():\n"
+        f"    {_HOME}    arm.reset_angle(0)\n"
+        "arm.run_target(500, 90)\nhome()\narm.run_target(500, -100)\n",
+        (-225.0, 135.0),
+    ),
+    "a turn in a method that is called first": (
+        "class Lift:\n"
+        "    def home(self):\n"
+        f"        {_HOME}"
+        "    def up(self):\n"
+        "        arm.run_angle(500, 90)\n"
+        "lift = Lift()\nlift.up()\nlift.home()\nlift.up()\n",
+        (-225.0, 135.0),
+    ),
     "a turn in a function that is called later": (
         f"def lift():\n    arm.run_angle(500, -90)\n{_HOME}lift()\n",
         (-225.0, 45.0),

@@ -6,6 +6,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import field
 
 from tuisim.base.data_class import dataclass
+from tuisim.programs.robot.calls import CallOrder
 from tuisim.programs.robot.mentions import Where
 from tuisim.programs.robot.scopes import Scope
 
@@ -53,6 +54,8 @@ class Mechanics:
     The port is empty for a motor whose port the program does not give.
     """
 
+    order: CallOrder = field(default_factory=CallOrder)
+    """The order in which the program reaches its lines."""
     reversed: dict[str, Where] = field(default_factory=dict)
     stops: dict[str, EndStop] = field(default_factory=dict)
     presses: list[StopPress] = field(default_factory=list)
@@ -124,12 +127,14 @@ class Mechanics:
         )
         self.targets_deg[port] = min((0.0, *first)) - turned_deg, max((0.0, *first)) + turned_deg
 
-    @staticmethod
-    def _is_before(target: Target, stop: EndStop | None) -> bool:
-        """Return whether a motor turns to a target before the same function drives it against its end stop."""
-        if stop is None or target.scope is not stop.scope:
+    def _is_before(self, target: Target, stop: EndStop | None) -> bool:
+        """Return whether a motor turns to a target before the program drives it against its end stop."""
+        if stop is None:
             return False
-        return target.where.line < stop.where.line
+        before, driven = (
+            self.order.find_order(event.where.line, event.scope) for event in (target, stop)
+        )
+        return before < driven
 
     def turn_motor(self, port: str, gear_ratio: float, *, is_turned: bool) -> None:
         """Convert the recorded range of a motor from the program's angles to angles of the motor itself.

@@ -8,7 +8,7 @@ from dataclasses import field
 
 from tuisim.base.data_class import dataclass
 from tuisim.programs.robot import library
-from tuisim.programs.robot.calls import is_negated
+from tuisim.programs.robot.calls import CallOrder, is_negated
 from tuisim.programs.robot.end_stops import EndStop, Mechanics, StopPress, Target
 from tuisim.programs.robot.evaluation import Evaluation
 from tuisim.programs.robot.library import INVERSED, NORMAL, DeviceKind, Moves
@@ -29,7 +29,8 @@ def read_mechanics(mentions: Mentions) -> Mechanics:
         return Mechanics()
     evaluation = mentions.evaluation
     moves = library.MOVES[mentions.library]
-    return _MechanicsReader(mentions, evaluation, moves).read()
+    mechanics = Mechanics(CallOrder(evaluation.calls))
+    return _MechanicsReader(mentions, evaluation, moves, mechanics).read()
 
 
 @dataclass(slots=True)
@@ -38,7 +39,7 @@ class _MechanicsReader:
     evaluation: Evaluation
     moves: Moves
     """The moves of the program's library."""
-    found: Mechanics = field(default_factory=Mechanics)
+    found: Mechanics
     normal: set[str] = field(default_factory=set)
     places: dict[str, set[float]] = field(default_factory=dict)
     """The positions that the program says its motors have, as at an end stop, by port."""
