@@ -23,6 +23,8 @@ SAID_SIZES: Mapping[str, tuple[str, tuple[float, float]]] = {
     "in German": ("RADRADIUS = 3.44\nRADABSTAND = 12", (68.8, 120.0)),
     "in Chinese": ("轮子直径 = 68.8\n轴距 = 150", (68.8, 150.0)),
     "the way per turn": ("CM_PER_ROTATION = 21.6", (68.8, 180.0)),
+    "the way per degree": ("MM_PER_DEGREE = 0.6", (68.8, 180.0)),
+    "degrees per way": ("DEGREES_PER_CM = 16.67", (68.7, 180.0)),
     "inches": ("WHEEL_DIAMETER_IN = 2.7", (68.6, 180.0)),
     "metres": ("WHEEL_RADIUS = 0.0344\nWHEEL_BASE = 0.12", (68.8, 120.0)),
     "degrees per turn": ("DEGREES_PER_ROTATION = 360", (56.0, 180.0)),
@@ -36,8 +38,14 @@ SAID_SIZES: Mapping[str, tuple[str, tuple[float, float]]] = {
         "import math\ndef to_turns(mm): return mm / (2 * math.pi * 34.4)\nto_turns(5)",
         (68.8, 180.0),
     ),
+    "a formula with the circumference": ("degrees = 30 / 21.6 * 360", (68.8, 180.0)),
+    "a formula with 360 first": ("degrees = 360 * 30 / 21.6", (68.8, 180.0)),
+    "turns by the circumference": (
+        "tank = MoveTank(OUTPUT_A, OUTPUT_D)\ntank.on_for_rotations(5, 5, 30 / 21.6)",
+        (68.8, 180.0),
+    ),
     "a formula beside a name": (
-        "WHEEL_DIAMETER = 43.2\ndegrees = 30 / (3.14159 * 6.88) * 360",
+        "WHEEL_DIAMETER = 43.2\ndegrees = 30 / 21.6 * 360",
         (43.2, 180.0),
     ),
     "a formula of angles": (

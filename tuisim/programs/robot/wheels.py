@@ -12,12 +12,13 @@ from tuisim.base.data_class import dataclass
 from tuisim.engine.core.hub_spec import HUB_PORTS
 from tuisim.engine.core.profile import Library
 from tuisim.engine.core.spec import NO_PORT, RobotSpec
-from tuisim.programs.robot.formulas import read_girth
+from tuisim.programs.robot.formulas import find_formula_size, read_girth
 from tuisim.programs.robot.library import DeviceKind
 from tuisim.programs.robot.mentions import Mention, Mentions, Pair, Where
 from tuisim.programs.robot.scopes import Bound, Parameter, Scope
 from tuisim.programs.robot.words import (
     Side,
+    find_girth,
     find_side,
     is_diameter,
     is_girth,
@@ -317,21 +318,19 @@ def _pick_diameter(named: Sequence[tuple[str, Size]]) -> Size | None:
         *((name, Size(2 * size.mm, size.where)) for name, size in named if is_radius(name)),
     ]
     girths = [
-        (name, Size(round(size.mm / math.pi, 2), size.where))
+        (name, Size(round(girth / math.pi, 2), size.where))
         for name, size in named
-        if is_girth(name)
+        if (girth := size.mm if is_girth(name) else find_girth(name, size.mm))
     ]
     return _pick_only(wheels, _DIAMETERS_MM) or _pick_only(girths, _DIAMETERS_MM)
 
 
 def _find_in_formulas(mentions: Mentions) -> Iterator[tuple[str, Size]]:
-    """Yield the wheel sizes in formulas such as `mm / (math.pi * 56)`, each after a name such as `wheel_diameter`."""
+    """Yield the wheel sizes in a program's formulas, each after its name, such as `wheel_diameter`."""
     for scope in mentions.scopes:
         for node in scope.body:
-            match node:
-                case ast.BinOp(op=ast.Div(), right=ast.BinOp() as product):
-                    if size := read_girth(product):
-                        yield size[0], Size(size[1], Where(scope.module.file, node.lineno))
+            if (size := find_formula_size(node)) and isinstance(node, ast.expr):
+                yield size[0], Size(size[1], Where(scope.module.file, node.lineno))
 
 
 def _find_named(mentions: Mentions) -> Iterator[tuple[str, Size]]:
@@ -374,7 +373,8 @@ def _read_dict(node: ast.Dict, scope: Scope) -> Iterator[tuple[str, Size]]:
 
 
 def _is_size(name: str) -> bool:
-    return is_girth(name) or is_diameter(name) or is_radius(name) or is_spacing(name)
+    is_girth_name = is_girth(name) or bool(find_girth(name, 1.0))
+    return is_girth_name or is_diameter(name) or is_radius(name) or is_spacing(name)
 
 
 def _read_number(value: object) -> float:

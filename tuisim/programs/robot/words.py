@@ -88,6 +88,7 @@ _PER_TURN = _split_words(
 )
 _LONG_WORD = 6
 _UNITS_MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4, "inch": 25.4, "inches": 25.4}
+_DEGREES = _split_words("degree degrees deg degs grad grado grados")
 _PER = _split_words("per pro por par")
 
 
@@ -128,6 +129,19 @@ def is_girth(name: str) -> bool:
     way = parts & _UNITS_MM.keys() or parts & _APART
     is_way_per_turn = bool(parts & _PER and parts & _PER_TURN and way)
     return is_way_per_turn or _is_of_wheel(name, _GIRTH) or _is_alone(name, _GIRTH)
+
+
+def find_girth(name: str, number: float) -> float:
+    """Return a wheel's circumference from a number and its name, such as `MM_PER_DEGREE` or `DEGREES_PER_CM`.
+
+    The result is in the unit of length in the name; 0 for other names.
+    """
+    parts = _split_name(name)
+    if len(parts) != 3 or parts[1] not in _PER or not number:
+        return 0.0
+    if parts[0] in _UNITS_MM and parts[2] in _DEGREES:
+        return 360 * number
+    return 360 / number if parts[0] in _DEGREES and parts[2] in _UNITS_MM else 0.0
 
 
 def _is_alone(name: str, measure: frozenset[str]) -> bool:
