@@ -221,7 +221,7 @@ class QuestionReader:
             users = [user for name in names for user in self._users.get(name, ())]
             if isinstance(step, ast.If) and step.orelse:
                 users += step.body + step.orelse
-            for user in sorted(users, key=lambda user: user.lineno):
+            for user in sorted(users, key=lambda user: (user.lineno, user.col_offset)):
                 if user not in flow:
                     flow[user] = None
                     queue.append(user)
