@@ -24,22 +24,24 @@ BITS_A_PIXEL = 32
 LINE_BYTES = DISPLAY_WIDTH * BITS_A_PIXEL // 8
 WHITE = 255
 DARK_BELOW = 128
-"""Greys below `DARK_BELOW` are dark."""
+"""A pixel whose grey, 0 to 255, is below this is black on the display; all others are white."""
 TRUE_COLOR = 2
 """The kernel's visual type for red, green and blue pixels."""
 NO_FILE = -1
-"""The descriptor of memory without a file."""
+"""The file descriptor that makes `mmap` create memory which belongs to no file."""
 DISPLAY_PATH = "/dev/fb0"
 FIXED_INFO = struct.pack(
     "@16s L 4I 3H I L I I 3H", b"st7586", 0, LINE_BYTES * DISPLAY_HEIGHT, 0, 0, TRUE_COLOR, 0, 0, 0, LINE_BYTES,
     0, 0, 0, 0, 0, 0,
 )  # fmt: skip
-"""The kernel's `fb_fix_screeninfo`."""
+"""The bytes of the kernel's structure `fb_fix_screeninfo` for this display, whose driver is `st7586`."""
 VARIABLE_INFO = struct.pack(
     "@8I 3I 3I 3I 3I 20I", DISPLAY_WIDTH, DISPLAY_HEIGHT, DISPLAY_WIDTH, DISPLAY_HEIGHT, 0, 0, BITS_A_PIXEL, 0,
     16, 8, 0, 8, 8, 0, 0, 8, 0, 0, 0, 0, *[0] * 20,
 )  # fmt: skip
-"""The kernel's `fb_var_screeninfo`: sizes, then offset, length and order of the bits of red, green, blue, alpha."""
+"""The bytes of the kernel's structure `fb_var_screeninfo`: the sizes of the display, then for red, green, blue and
+alpha the offset, number and order of their bits in a pixel.
+"""
 
 
 class Screen:

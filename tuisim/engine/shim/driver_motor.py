@@ -25,11 +25,11 @@ SET_POINTS = (
     "ramp_up_sp",
     "ramp_down_sp",
 )
-"""Attributes that are set points, in the order of `SetPoints`."""
+"""The motor attributes that are set points, in the order of the fields of `SetPoints`."""
 STOP_ACTION = len(SET_POINTS)
 SIGNED = ("speed_sp", "position_sp", "duty_cycle_sp")
 FIRST_SET_POINTS = (*map(float, SetPoints()[:STOP_ACTION]), 0.0)
-"""The set points of a motor after a reset, in the order in which its commands take them."""
+"""The values of `SET_POINTS`, and then the number of the stop action, of a motor after a reset."""
 
 
 class DriverTacho(SignedTacho):

@@ -37,7 +37,9 @@ _FAMILIES: tuple[tuple[str, tuple[str, ...], tuple[int, ...]], ...] = (
     ("term", ("", "B"), (14,)),
     ("tim", ("B", "BI", "I", "R"), _SIX),
 )
-"""Family, styles and sizes in pixels."""
+"""The brick's font families: the name of each, the styles that it has (B bold, I or O slanted), and its sizes in
+pixels.
+"""
 
 _CELLS: Mapping[str, Mapping[int, int]] = {
     "cour": {8: 5, 10: 6, 12: 7, 14: 9, 18: 11, 24: 15},
@@ -47,25 +49,27 @@ _CELLS: Mapping[str, Mapping[int, int]] = {
 }
 """Width of every character in pixels, by family and size; the other families are proportional."""
 _CELL = 0.6
-"""Width of every character relative to the size, in monospaced fonts of other sizes."""
+"""Width of every character of a monospaced font whose size is not in `_CELLS`, as a fraction of the size."""
 
 _LETTERS = tuple(chr(code) for code in (*range(32, 127), *range(160, 256)))
 _FINE = 6
-"""Factor by which glyphs are drawn larger before they are reduced."""
+"""Glyphs are drawn this many times larger than they are needed, and then reduced, so that their edges become greys."""
 _BOLDER = 0.035
-"""Extra width of bold strokes to each side, relative to the size."""
+"""Width that a bold stroke has in addition on each side, as a fraction of the font's size."""
 _SLANT = 0.2
 _DARK_FROM = {8: 64, 10: 80, 12: 96}
-"""Grey, of 255, from which a pixel is dark, by size: otherwise small letters would lose thin strokes."""
+"""The grey, 0 to 255, from which a pixel of a glyph is black, by the font's size in pixels: low for small letters,
+which would otherwise lose thin strokes.
+"""
 _DARK_FROM_USUALLY = 120
 _BOLD_DARKER = 24
 
 _PLAIN_CELL_PX = (6, 11)
-"""Size of a character of Pillow's plain font."""
+"""Width and height in pixels of a character in Pillow's default font."""
 _PLAIN_BASE_PX, _PLAIN_CAPITAL_PX = 9, 6
-"""Distance of the plain font's baseline from the top, and height of its capitals."""
+"""In Pillow's default font, the distance of the baseline from the top of a character, and the height of a capital."""
 _CAPITAL = 0.7
-"""Height of capitals relative to the size."""
+"""Height of a capital letter as a fraction of the font's size."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +80,7 @@ class Face:
     bold: bool
     slanted: bool
     cell_px: int | None
-    """Width of every character; None for a proportional font."""
+    """Width of every character in pixels; None for a proportional font."""
 
 
 FACES: Mapping[str, Face] = {
@@ -87,7 +91,7 @@ FACES: Mapping[str, Face] = {
     for style in styles
     for size in sizes
 }
-"""The brick's fonts."""
+"""The properties of the brick's fonts, by the font's name, such as `courB24`."""
 
 
 @cache

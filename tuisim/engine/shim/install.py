@@ -30,7 +30,9 @@ Around = Callable[[], AbstractContextManager[None]]
 
 
 CACHES = {"/tmp/current_platform": "ev3\n"}
-"""Files in which libraries store what they found out about the brick, so that they do not examine this computer."""
+"""Contents of the files in which libraries store the platform that they found, by path; with them, no library examines
+this computer.
+"""
 
 
 class FinishingFinder:

@@ -21,13 +21,13 @@ from tuisim.engine.shim.method_globals import rebind
 from tuisim.engine.shim.session import DeviceSession
 
 LED_CLASS = "leds"
-"""The kernel's class of LEDs."""
+"""The kernel's name of the class of LEDs, a folder of `/sys/class`."""
 MAX_BRIGHTNESS = 255
 TRIGGERS = ("none", "timer", "default-on")
 BLINK_MS = 500
-"""Default duration of the on and off phases of blinking."""
+"""Default duration in ms of each phase, on or off, of a blinking LED."""
 STOP_POLL_NS = MS
-"""Interval at which stopping an animation checks whether it is over."""
+"""Simulated time between two checks of `animate_stop` whether the animation has ended."""
 
 
 def led_name(name: str) -> str:
@@ -71,7 +71,7 @@ class Light:
         self._blink_brightness = 0
         self._delays_ms = {"delay_on": 0, "delay_off": 0}
         self._blink = 0
-        """Number of the current blinking; threads of earlier ones end."""
+        """How often the blinking was set anew; a thread that blinks the LED ends when this number has changed."""
 
     def device(self) -> SimDevice:
         """Return the LED as a device of `/sys/class/leds`."""
@@ -170,7 +170,7 @@ def patch_led_module(session: DeviceSession, module: types.ModuleType) -> None:
     led: Any = module
     numbers = count(1)
     running: dict[int, int] = {}
-    """Thread of each animation, by its number."""
+    """The identity of the thread that runs each animation, by the animation's number."""
 
     def start_new_thread(function: Callable[..., None], arguments: tuple[Any, ...]) -> int:
         number = next(numbers)

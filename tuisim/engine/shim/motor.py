@@ -65,7 +65,9 @@ class Tacho(ABC):
         self._polarity = "normal"
         self._last_command = ""
         self._look: Reader | None = None
-        """Returns a value that differs after each change of state that the driver reports; None: the state."""
+        """Returns a value that changes whenever the driver reports a change of the motor's state; if None, the
+        attribute `state` is compared instead.
+        """
         self._set_up()
 
     @abstractmethod
@@ -179,7 +181,7 @@ class TachoMotor(SignedTacho):
         self._numbers: dict[str, int] = {}
         self._direct = False
         self._standstill_tick = 0
-        """Tick at which a motor with target speed 0 comes to a stop."""
+        """Tick at which a motor that decelerates to the target speed 0 comes to a stop."""
         self._set_defaults()
 
     def _set_defaults(self) -> None:
@@ -202,7 +204,7 @@ class TachoMotor(SignedTacho):
         self._last_goal: float | None = None
         self._holding = False
         self._ramps = False
-        """Whether a ramp set point limits changes of speed."""
+        """Whether `ramp_up_sp` or `ramp_down_sp` is above 0, so that changes of speed are limited."""
 
     def device(self) -> SimDevice:
         """Return the motor as a device of `/sys/class/tacho-motor`."""
@@ -381,7 +383,7 @@ WITHOUT_EFFECT = (
     "hold_pid/Ki",
     "hold_pid/Kd",
 )
-"""Attributes that are stored without effect."""
+"""Motor attributes that the browser simulator lacks: a program can write and read them, but they have no effect."""
 
 
 class BrowserTacho(Tacho):

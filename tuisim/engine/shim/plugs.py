@@ -30,7 +30,7 @@ from tuisim.engine.shim.brick import MOTOR_CLASS, SENSOR_CLASS, BuiltBrick
 from tuisim.engine.shim.motor import KINDS
 
 PART_OF_KIND = {kind: part for part, kind in MOTOR_KIND_OF.items()}
-"""Classes of motors, by their kinds."""
+"""The name of the library's class for each kind of motor, such as `LargeMotor` for `large`."""
 
 
 PART_OF_DRIVER = {
@@ -42,7 +42,9 @@ PART_OF_DRIVER = {
         if kind.spec is spec
     },
 }
-"""Classes of parts, by the names of their drivers."""
+"""The name of the library's class for the motors or sensors of each driver, such as `LargeMotor` for
+`lego-ev3-l-motor`.
+"""
 _PORT = re.compile(r"(?:ev3-ports:)?(out[A-D]|in[1-4])")
 
 
@@ -65,7 +67,9 @@ class Plugs:
         self.missing: type[Exception] = Exception
         """The library's error for a device that is not connected."""
         self._late: frozenset[str] = frozenset()
-        """The ports of motors that a program wants as wheels after a wheel has turned, which is too late."""
+        """Ports of the motors that a program named as its wheels only after a wheel had turned; they cannot become
+        wheels any more.
+        """
 
     def add_device(self, class_name: str, wanted: Mapping[str, Any]) -> bool:
         """Plug in the device that a library searches for; return whether the robot has it now.

@@ -16,7 +16,7 @@ from tuisim.engine.shim.session import DeviceSession
 
 POWER_CLASS = "power_supply"
 BATTERY = "lego-ev3-battery"
-"""Class and name of the battery, by their kernel names."""
+"""The kernel's name of the battery, whose class is `POWER_CLASS`."""
 
 FULL_V, EMPTY_V = 8.1, 6.0
 MAX_DESIGN_V, MIN_DESIGN_V = 8.4, 6.0
@@ -37,7 +37,7 @@ class Battery:
         self._full_v = session.sim.spec.robot.battery_v if session.sim.notices else FULL_V
         self._records = 0
         self._drawn_as = 0.0
-        """Ampere seconds drawn in the records summed up to now."""
+        """Charge, in ampere seconds, that the brick has drawn in the first `_records` records of the run."""
 
     def device(self) -> SimDevice:
         """Return the battery as a device of `/sys/class/power_supply`."""

@@ -17,7 +17,7 @@ from tuisim.engine.shim.session import DeviceSession
 from tuisim.engine.shim.waits import Wait, waits_for
 
 POLL_MS = 10
-"""Interval at which a waiting thread polls the motor."""
+"""Simulated ms between two looks at a motor by a thread that waits for the motor."""
 
 
 def round_half_up(number: float) -> int:

@@ -30,7 +30,7 @@ class Patience:
 
     def __init__(self) -> None:
         self.until_motors_stop = 0
-        """Above 0 while the library only polls to check repeatedly whether a motor moves."""
+        """The number of calls of `wait_until_not_moving` without a timeout that are under way."""
 
     def patient(self, function: Callable[..., bool]) -> Callable[..., bool]:
         """Return a wrapper of `wait_until_not_moving` that marks its polls as waits for motors to stop."""

@@ -42,7 +42,9 @@ from tuisim.engine.shim.unsupported.parts import (
 NAME = "ev3dev2.sensor.virtual"
 _UNSIMULATED = ("CameraSensor", "LaserRangeSensor", "LidarSensor", "ObjectTracker", "Radio")
 _MORE_PORTS = range(5, 13)
-"""Inputs of Gears that a brick does not have: devices on them are its virtual parts."""
+"""The numbers of the inputs that the simulator Gears has and a real brick lacks; Gears has its virtual devices there.
+
+"""
 
 
 class _Unsimulated:
@@ -118,7 +120,7 @@ def virtual_module(session: DeviceSession) -> types.ModuleType:
 AROUND: Mapping[str, Callable[[], AbstractContextManager[None]]] = dict.fromkeys(
     ("ev3dev.core", "ev3dev.fonts"), surroundings
 )
-"""Contexts in which modules are imported, by name."""
+"""Functions that return the context manager in which a module is imported, by the module's name."""
 
 
 def finishers(

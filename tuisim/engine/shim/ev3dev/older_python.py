@@ -30,7 +30,7 @@ FINISHERS: Mapping[str, Callable[[types.ModuleType], None]] = {
     "fractions": lambda module: vars(module).update(gcd=math.gcd),
     "threading": _finish_threading,
 }
-"""Functions that add the names of Python 3.5 to a module after its import, by the module's name."""
+"""Functions that add to a module, after its import, the names that only Python 3.5 has there, by the module's name."""
 
 
 class _MicroPython(MicroPythonFinder):

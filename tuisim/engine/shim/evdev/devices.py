@@ -73,7 +73,9 @@ NAMES: Mapping[str, str] = {
         MT_POSITION_Y MT_TOOL_TYPE MT_BLOB_ID MT_TRACKING_ID MT_PRESSURE MT_DISTANCE MT_TOOL_X MT_TOOL_Y
     """,
 }
-"""Names by group, in the order of their numbers; a name without a number has the one after its predecessor's."""
+"""The kernel's names of input events by group, in the order of their numbers; a name without `=` has the number after
+that of the name before it.
+"""
 
 
 def numbered(names: str) -> Iterator[tuple[str, int]]:

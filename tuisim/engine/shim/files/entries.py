@@ -16,7 +16,9 @@ if TYPE_CHECKING:
 
 FOLDER_MODE = stat.S_IFDIR | 0o755
 READ_MODE, WRITE_MODE = 0o444, 0o220
-"""Permissions of attributes: everybody may read, the programs' group may write."""
+"""Permission bits of an attribute's file: all users may read a readable one, owner and group may write a writable one.
+
+"""
 ATTRIBUTE_BYTES = 4096
 """Size of every attribute's file, as the kernel reports it."""
 IDENTITY = ("address", "driver_name")
@@ -34,11 +36,11 @@ class OpenFile:
     writable: bool
     fd: int = -1
     at: int = 0
-    """Position of the next read or write."""
+    """Position in the file, in bytes, of the next read or write."""
     data: bytes = b""
-    """The text that was read from the device, of which further reads return parts."""
+    """The attribute's text as the last read at position 0 found it; reads at later positions return parts of it."""
     seen: object = None
-    """The device's state when it was last read; None until then."""
+    """The value that `poll` compares with the present one to find a change; None until the file has been read."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -220,7 +220,7 @@ _BUFFERED = (
     "seek",
     "close",
 )
-"""Methods of buffered files that may reach the device."""
+"""Methods of buffered files that may read or write the device file below the buffer."""
 
 
 def file_object(

@@ -23,7 +23,7 @@ from tuisim.engine.shim.files.open_files import DeviceIO, OpenFiles, file_object
 from tuisim.engine.shim.files.tree import MAYBE_OURS, DeviceTree
 
 Replace = Callable[[Any, str, Callable[..., Any]], None]
-"""Replaces a function of a module, by its name."""
+"""A function that replaces a function of a module; it takes the module, the function's name and the replacement."""
 
 _MISSING: Any = object()
 
@@ -33,14 +33,14 @@ _FLAGS = {
     "a": os.O_WRONLY | os.O_CREAT | os.O_APPEND,
 }
 _FLAGS["x"] = _FLAGS["w"] | os.O_EXCL
-"""Flags with which each mode of `open` opens a file; with `+` it is also opened for the other direction."""
+"""The flags of `os.open` for each mode of `open` without `+`; a `+` changes them to reading and writing."""
 
 _FALLS_BACK = ("sendfile", "copy_file_range")
-"""Calls whose users, such as `shutil`, read and write instead when the kernel refuses."""
+"""Functions of `os` that fail for device files; callers such as `shutil` then use `read` and `write` instead."""
 _REFUSED = (
     *("dup2", "ftruncate", "pread", "pwrite", "readv", "writev", "preadv", "pwritev", "splice"),
 )
-"""Further calls that take descriptors, and which hardly any program for a brick uses."""
+"""Further functions of `os` that fail for the descriptors of device files; hardly any program for a brick uses them."""
 
 
 class DeviceEntry:

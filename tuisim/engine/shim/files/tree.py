@@ -12,9 +12,9 @@ from tuisim.engine.shim.files.entries import AttributeFile, DeviceFile, Folder
 
 INPUT_FOLDER = "/dev/input"
 FOLDERS = (CLASSES_FOLDER, INPUT_FOLDER)
-"""Folders that are the brick's with everything in them, whatever this computer has there."""
+"""Folders in which a program sees only the files of the simulated brick, whatever files this computer has there."""
 MAYBE_OURS = ("/sys/", "/dev/", "/tmp/current_platform", "//")
-"""What the path of a file of the tree begins with; all other absolute paths are this computer's."""
+"""The beginnings of all paths that can be those of the brick's files; any other path is one of this computer."""
 
 Entry = Folder | DeviceFile
 

@@ -27,15 +27,19 @@ from tuisim.engine.shim.waits import Wait, waits_for
 
 LARGEST = int(MAX_NUMBER)
 POLL_US = 5000
-"""Interval at which a blocking call checks for the end of its move, as in the firmware."""
+"""Interval in µs at which a blocking call checks whether its move has ended, as in the firmware."""
 
 BLOCKED_POLL_US = 100_000
-"""Interval of these checks while something blocks a motor, so that the user is told when the motor is stalled."""
+"""Longest time in µs between two checks of a blocking call while something blocks a motor: then the user learns that
+the motor is stalled.
+"""
 
 
 Result = TypeVar("Result")
 Waiting = Generator[int, None, Result]
-"""Something that takes time: it yields the times in microseconds until which to wait."""
+"""A generator for a call that takes time: it yields each time, in µs since the start, until which to wait, and returns
+the call's result.
+"""
 
 
 class Awaited:
@@ -67,9 +71,11 @@ class Brick:
     screen: Screen
     mixer: Mixer
     hint: Callable[[str], str]
-    """Returns a hint with the devices of a class, such as motors, and their ports."""
+    """Returns a hint that lists the robot's devices of a kernel class, such as its motors, with their ports."""
     name_replacement: Callable[[str, str], str] = lambda *_: ""
-    """Returns, after a colon, what to use in place of an attribute that a class does not have; empty if unknown."""
+    """Takes the name of a class and of an attribute that the class lacks; returns a colon and what to use instead, or
+    an empty text if that is unknown.
+    """
     said: set[str] = field(default_factory=set)
     """The subjects of messages that have been printed, see `say_once`."""
     led_levels: Mapping[str, int] = field(default_factory=dict)
@@ -213,7 +219,7 @@ class Connected:
     brick: ClassVar[Brick]
 
     port: Any = None
-    """The port to which the device is connected."""
+    """The port to which the device is connected, as the program gave it; None for a part inside the brick."""
 
     def _take_port(self, port: Any, names: Sequence[str]) -> str:
         """Store the port to which the device is connected, and return the port's name in the robot.
@@ -259,7 +265,9 @@ def refused(text: str) -> RuntimeError:
 
 
 FirmwareError: Any = type("OSError", (OSError,), {"__module__": "builtins"})
-"""An OSError that is shown as on the brick: for some numbers, Python would create an object of a subclass."""
+"""A class shown as `OSError`, like the errors on the brick: for some numbers, `OSError` itself would create an object
+of a subclass, such as PermissionError.
+"""
 
 
 def not_permitted() -> Any:

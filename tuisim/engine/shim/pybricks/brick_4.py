@@ -18,7 +18,9 @@ from tuisim.engine.shim.tones import Heard, Tone
 from tuisim.engine.shim.unsupported.modules import Hardware, refused_part
 
 HUES: Mapping[int, str] = {15: "RED", 45: "ORANGE", 90: "YELLOW", 180: "GREEN", 330: "", 360: "RED"}
-"""The colour of the light for a range of hues, by the highest hue of the range; the light stays dark for others."""
+"""The colour that the brick's light shows for a range of hues, by the range's highest hue in degrees; empty where the
+light stays dark.
+"""
 
 
 class AnimatedLight:

@@ -33,7 +33,7 @@ EARLIER: Mapping[str, Mapping[str, str]] = {
     ),
     "pybricks.iodevices": {"Ev3devSensor": "use the sensors of pybricks.ev3devices"},
 }
-"""Hints for names that version 4 no longer has, by module and name."""
+"""Hints on what to use instead of the names that version 4 of Pybricks no longer has, by module and name."""
 EARLIER_MODULES: Mapping[str, str] = {
     "pybricks.display": _BRICK,
     "pybricks.ev3brick": _BRICK,
@@ -42,7 +42,7 @@ EARLIER_MODULES: Mapping[str, str] = {
     "pybricks.media.ev3dev": _FILES,
     "pybricks.speaker": _BRICK,
 }
-"""Hints for modules that version 4 no longer has."""
+"""Hints on what to use instead of the modules that version 4 of Pybricks no longer has, by module."""
 EARLIER_MEMBERS: Mapping[str, str] = {
     "drive_time": "drive(), wait() and stop() do it",
     "orientation": "display.orientation() turns what the matrix shows",
@@ -53,7 +53,9 @@ EARLIER_MEMBERS: Mapping[str, str] = {
     "set_run_settings": "control.limits() sets them",
     "set_volume": "volume(percent) sets it",
 }
-"""Hints for attributes of objects that version 4 no longer has, by name."""
+"""Hints on what to use instead of the methods that objects no longer have in version 4 of Pybricks, by the method's
+name.
+"""
 
 
 def name_replacement(_owner: str, name: str) -> str:
