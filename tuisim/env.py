@@ -27,11 +27,12 @@ except ImportError as error:
     raise ImportError(f"tuisim.env needs Gymnasium: {hint}") from error
 
 Values = Mapping[str, float]
-"""Values by the name of their column."""
+"""The values of one instant, by the name of their telemetry column."""
 Vector = np.ndarray[Any, np.dtype[np.float32]]
 
 _BOUNDS = {"pc": (0.0, 100.0), "red": (0.0, 255.0), "green": (0.0, 255.0), "blue": (0.0, 255.0)}
-"""By the last word of a column's name."""
+"""Lowest and highest value of a column, by the last word of the column's name; other columns have `_FARTHEST` as bound.
+"""
 _FARTHEST = 1e6
 
 

@@ -28,14 +28,15 @@ from tuisim.engine.shim.session import DeviceSession
 from tuisim.engine.shim.unsupported.devices import foreign_mode
 
 RAW_WHITE = 300
-"""Value of the raw channels on white; the library scales by it until it is calibrated."""
+"""Value of each channel of `RGB-RAW` on white; ev3dev2 divides by this number until the program calibrates the sensor.
+"""
 MAX_TENTHS_INCH = 1003
-"""Reading in inches when no echo returns."""
+"""Highest reading in tenths of an inch, 100.3 inches, which the ultrasonic sensor also gives when no echo returns."""
 MAX_RATE_DPS = 440
-"""Highest rate that the gyro measures."""
+"""Highest rate of turn in degrees per second that the gyro measures; a higher one reads as this."""
 
 FORMS = {"s8": "b", "s16": "h"}
-"""Formats of binary values: the driver's names and those of `struct`."""
+"""The format characters of `struct` for the values in `bin_data`, by the driver's name of the format."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +81,9 @@ class LegoSensor:
         self._next_free = (-1, -1)
         self._old_values: tuple[int, ...] = ()
         self._old_until_ns = 0
-        """Up to this time, a sensor whose mode was changed still returns `_old_values`, if there are any."""
+        """Simulated time in ns until which a sensor, after a change of its mode, returns `_old_values` if there are
+        any.
+        """
         mode_switch_ns = session.sim.spec.profile.mode_switch_ns
         self._switch_ns = mode_switch_ns if switch_ns is None else switch_ns
 

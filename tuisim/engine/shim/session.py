@@ -20,7 +20,7 @@ class DeviceSession(Protocol):
     now: int
     """Simulated ns since the start."""
     free: int
-    """Above 0 while calls are free of charge: the library's own look-ups, constructors, the prelude."""
+    """Above 0 while calls take no simulated time, such as the library's own look-ups, and constructors."""
 
     wheel_registers: tuple[Callable[[], MotorRegisters], ...]
     """Functions that read the registers of the left and the right wheel's motor; set when the brick is built."""
@@ -32,9 +32,9 @@ class DeviceSession(Protocol):
     """The value of `Program.shown_ports`; None also before the program begins."""
 
     pressed: frozenset[str]
-    """The pressed buttons of the brick, by their names in the library."""
+    """The names of the buttons that the user presses now, on the brick and on its remote controls."""
     stop_buttons: frozenset[str]
-    """The buttons that stop the program when all of them are pressed; none if empty."""
+    """The names of the buttons that together stop the program; empty if no buttons stop it."""
 
     @property
     def field(self) -> Field:

@@ -17,9 +17,11 @@ LOUDEST = 100
 CHANNEL = "Playback"
 """The only mixer channel of the brick."""
 SHORTEST_TURN_NS = 100 * MS
-"""Shortest period of a sound that repeats forever: the player has to start."""
+"""Shortest time from one repetition of an endlessly repeated sound to the next: the brick's player has to start each
+time.
+"""
 NO_PID = 1 << 22
-"""A process id that no process of this computer has, nor a higher one (Linux: PID_MAX_LIMIT)."""
+"""A process id for simulated processes: Linux gives its processes only smaller ones (PID_MAX_LIMIT)."""
 _KILLED = -9
 _TERMINATED = -15
 
@@ -129,7 +131,7 @@ class Loudspeaker:
     def __init__(self, session: DeviceSession) -> None:
         self._session = session
         self.song: list[Tone] | None = None
-        """Collects the tones of a song while the library plays its notes."""
+        """The tones of the song whose notes the library is playing; None outside a song."""
 
     def play(self, heard: Heard, wait_ns: int) -> None:
         """Play the sound `heard`, and let `wait_ns` of simulated time pass."""

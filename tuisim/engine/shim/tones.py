@@ -16,17 +16,21 @@ from tuisim.engine.shim.device_files import plain
 BEEP_HZ = 440.0
 BEEP_MS = 200.0
 REPEAT_PAUSE_MS = 100.0
-"""Defaults of `beep`: frequency and duration of a tone, and the pause between two repetitions."""
+"""`BEEP_HZ`, `BEEP_MS` and `REPEAT_PAUSE_MS` are what the command `beep` uses by default: the frequency and the
+duration of a tone, and the pause between two repetitions.
+"""
 HIGHEST_HZ = 20_000.0
-"""`beep` rejects higher frequencies."""
+"""Highest frequency of a tone that the command `beep` accepts."""
 MOST_REPETITIONS = 10_000
-"""Largest number of repetitions of a tone, because each one is listed."""
+"""Largest number of repetitions of a tone that the command `beep` accepts here, because each becomes a `Tone`."""
 WORDS_PER_MINUTE = 175
-"""Default speed of `espeak`; the library gives it 130."""
+"""Speed of `espeak` if a command names none; the library always names one, usually 130."""
 SLOWEST_WPM, FASTEST_WPM = 80, 450
-"""Slowest and fastest speed of `espeak`, in words per minute."""
+"""Slowest and fastest speed of `espeak`, in words per minute; other speeds count as the nearer of them."""
 NAMED_TONES = 4
-"""Number of tones that a description names; the others are only counted."""
+"""Up to this number of tones, the description of a sound gives their frequencies; of more tones, it gives only the
+number.
+"""
 
 _TO_SPEAKER = " | /usr/bin/aplay -q"
 
@@ -57,7 +61,7 @@ class Heard:
     tones: tuple[Tone, ...] = ()
     """The tones of the sound; empty for speech."""
     file: str = ""
-    """Absolute path of a sound file."""
+    """Absolute path of the sound file that is played; empty for another sound."""
     refused: bool = False
     """Whether nothing is heard, because the command or the file is invalid."""
 

@@ -16,15 +16,19 @@ class Wait(Enum):
     SLEEP = auto()
     FILES = auto()
     LOOP = auto()
-    """The program waits for nothing: a loop has run without time passing."""
+    """The program waits for nothing: it has run a loop without a call that takes simulated time, so some time now
+    passes.
+    """
     MOTOR = auto()
     INPUT = auto()
     BUTTONS = auto()
-    """The program waits for the buttons in `to_press` and `to_release`."""
+    """The program waits until the buttons in the waiting function's `to_press` are pressed, and those in its
+    `to_release` are not.
+    """
     BUTTON_EVENT = auto()
     SOUND = auto()
     READING = auto()
-    """The program waits for the value of the attribute in `name`."""
+    """The program waits for a value of the device's attribute that the waiting function's variable `name` holds."""
     THREAD = auto()
     LOCK = auto()
 

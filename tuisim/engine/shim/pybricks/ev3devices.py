@@ -18,9 +18,9 @@ from tuisim.engine.shim.pybricks.parameters import (
 from tuisim.engine.shim.sensors import ColorDevice, GyroDevice
 
 LAST_CODE = Color.BROWN.value
-"""The highest code of the colour sensor; the codes are the values of the colours."""
+"""The highest colour code that the colour sensor gives for a member of `Color`; a code is the member's value."""
 KEYPAD = Button.LEFT_UP, Button.LEFT_DOWN, Button.RIGHT_UP, Button.RIGHT_DOWN
-"""The buttons of the infrared remote control but for the beacon, in the order of their bits."""
+"""The buttons of the infrared remote control except the beacon's, in the order of their bits in the mode `IR-REM-A`."""
 FIRST_KEYPAD_BIT = 0x10
 REMOTE_BUTTONS: tuple[tuple[Button, ...], ...] = (
     (),
@@ -30,9 +30,9 @@ REMOTE_BUTTONS: tuple[tuple[Button, ...], ...] = (
     KEYPAD[:2],
     KEYPAD[2:],
 )
-"""The buttons that the codes of the infrared remote control stand for."""
+"""The pressed buttons of the infrared remote control, by the code that the sensor gives in the mode `IR-REMOTE`."""
 NO_BEACON = -128
-"""The distance that the infrared sensor reads without a beacon."""
+"""The distance that the infrared sensor gives in the mode `IR-SEEK` if it finds no beacon."""
 DEG_PER_HEADING = 3
 CHANNELS = range(1, 5)
 
@@ -41,7 +41,8 @@ class Sensor(Connected):
     """Base class of Pybricks' EV3 sensors; such a sensor is on an input port, and measures in one of its modes."""
 
     KIND: ClassVar[str] = ""
-    """One of `engine.core.sensors.SENSORS`; empty for any of them."""
+    """The kind of sensor that the class needs, a key of `engine.core.sensors.SENSORS`; empty if it accepts every kind.
+    """
 
     def __init__(self, port: AnyPort) -> None:
         name = self._take_port(port, self.brick.session.sim.spec.robot.input_ports)
@@ -121,7 +122,7 @@ class InfraredSensor(Sensor):
     KIND = "infrared"
 
     COLLECT: ClassVar[type[Any]] = list
-    """Makes the collections of buttons that it returns."""
+    """The type of the collections in which `buttons` and `keypad` return buttons: a list, or a set under version 4."""
 
     def distance(self) -> int:
         """Return the distance to the next object, 0 for near to 100 for far."""

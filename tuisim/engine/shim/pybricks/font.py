@@ -13,9 +13,9 @@ if TYPE_CHECKING:
 
 FAMILY = "Lucida"
 SIZE_PX = 12
-"""The default font of the screen."""
+"""Height in pixels of the letters of the screen's default font, which belongs to `FAMILY`."""
 LARGEST_PX = 128
-"""Letters are drawn no larger: they would be higher than the screen."""
+"""Letters of a larger font are drawn at this size, which is the screen's height."""
 BLANK = " "
 
 

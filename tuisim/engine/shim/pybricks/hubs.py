@@ -21,14 +21,14 @@ BUTTON_NAMES: Mapping[str, Button] = {
     "down": Button.DOWN,
     "backspace": Button.LEFT_UP,
 }
-"""The brick's buttons, by their names in the session, in the order in which `pressed` lists them."""
+"""The brick's buttons, by their names in `DeviceSession.pressed`, in the order in which `pressed` lists them."""
 LIGHTS: Mapping[str, tuple[int, int]] = {
     "RED": (MAX_BRIGHTNESS, 0),
     "ORANGE": (MAX_BRIGHTNESS, MAX_BRIGHTNESS),
     "YELLOW": (30, MAX_BRIGHTNESS),
     "GREEN": (0, MAX_BRIGHTNESS),
 }
-"""Brightness of the red and the green LED for each colour; for others the light is off."""
+"""Brightness, 0 to 255, of the red and the green LED for each colour by name; any other colour turns the light off."""
 
 
 class Buttons(Connected):
@@ -45,7 +45,7 @@ class Buttons(Connected):
         self._buttons, self._place = buttons, place
 
     COLLECT: ClassVar[type[Any]] = list
-    """Makes the collections of buttons that it returns."""
+    """The type of the collection in which `pressed` returns buttons: a list, or a set under version 4."""
 
     def pressed(self) -> Any:
         """Return the buttons that are pressed now, as members of `Button`; empty for none."""

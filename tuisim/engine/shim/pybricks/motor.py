@@ -123,7 +123,7 @@ class Motor(DCMotor):
     """A large or medium motor, whose speed and angle are controlled."""
 
     STOPS: ClassVar[tuple[type[Enum], ...]] = (Stop,)
-    """The classes whose members say what the motor does after a move."""
+    """The `Stop` classes whose members a move accepts as its argument `then`, what the motor does afterwards."""
     log = refused_part("Motor", "log", LOGGER)
 
     def __init__(

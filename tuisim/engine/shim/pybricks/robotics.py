@@ -26,9 +26,9 @@ class DriveBase(Connected):
 
     CONTROL: ClassVar[type[Control]] = Control
     MIN_SIZE_MM: ClassVar[float] = 1 / 65536
-    """Smallest diameter of the wheels and smallest axle track: the firmware computes with such fractions."""
+    """Smallest diameter of the wheels, and smallest axle track, in mm: the firmware computes in steps of 1/65536."""
     current: ClassVar[DriveBase | None] = None
-    """The newest drive base of the program: when it is created, it stops the one before."""
+    """The newest drive base of the program; None before the first. A further one takes its place."""
     log = refused_part("DriveBase", "log", LOGGER)
 
     def __init__(

@@ -14,11 +14,13 @@ from tuisim.engine.shim.sound import LOUDEST, Loudspeaker, Mixer
 from tuisim.engine.shim.tones import Heard, Tone, file_heard, song_of, speech_heard, tones_heard
 
 BRICK_SOUND_MS = 1000.0
-"""How long each of the brick's own sounds takes here, an estimate: most are one word, or a short effect."""
+"""Estimated duration in ms of each sound that is stored on the brick: most are one word, or a short effect."""
 UNTIL_NEXT_MS = 1000.0
-"""How long a loudspeaker of this computer plays a tone that lasts until the next beep."""
+"""How long, in ms, this computer plays a tone of `beep` with a negative duration, which lasts on a brick until the next
+beep.
+"""
 START_VOLUMES: Mapping[str, int] = {"PCM": 70, "Beep": 30}
-"""Volumes at the start in percent, by the name of the mixer's control."""
+"""Volumes in percent at the start of a program, by the name of the mixer's control."""
 ALL_VOLUMES = "_all_"
 START_WORDS_A_MINUTE = 130
 
@@ -29,9 +31,9 @@ FROM_A = {"C": -9, "D": -7, "E": -5, "F": -4, "G": -2, "A": 0, "B": 2}
 """Semitones of each note above A of the same octave; negative below it."""
 NOTE = re.compile(r"(?:R|([A-G])([#b]?)([2-8]))/(\d{1,2})(\.?)(_?)")
 NO_NOTES = frozenset({"Cb", "Fb", "E#", "B#"})
-"""Spellings of notes that the firmware does not know."""
+"""Spellings of notes that the firmware rejects; the tones have the names B, E, F and C."""
 WHOLE_NOTE_MS_AT_1 = 240_000
-"""Length of a whole note at one quarter note per minute."""
+"""Length in ms of a whole note at a tempo of 1, which is one quarter note per minute."""
 
 
 def note_of(text: Any, whole_ms: int) -> Tone:

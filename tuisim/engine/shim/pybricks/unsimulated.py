@@ -28,7 +28,7 @@ IO_DEVICES: Mapping[str, Hardware] = {
     "LUMPDevice": Hardware("a sensor with the protocol of LEGO's UART sensors", _LEGO),
     "UARTDevice": Hardware("an UART device", _LEGO),
 }
-"""Classes of `pybricks.iodevices`."""
+"""Classes of `pybricks.iodevices` that can be imported but not used, by name."""
 
 NXT_DEVICES: Mapping[str, Hardware] = {
     "AnalogSensor": _ANALOG,
@@ -48,7 +48,7 @@ NXT_DEVICES: Mapping[str, Hardware] = {
     ),
     "VernierAdapter": Hardware("the adapter for Vernier sensors", _LEGO),
 }
-"""Classes of `pybricks.nxtdevices`."""
+"""Classes of `pybricks.nxtdevices`, which can be imported but not used, by name."""
 
 _BLUETOOTH = ON_THE_BRICK["bluetooth"].told_to(Library.PYBRICKS)
 _INSIDE = Hardware("what version 1.0 has inside", "use EV3Brick(), and its parts")
@@ -61,7 +61,7 @@ MODULES: Mapping[str, Hardware] = {
         _INSIDE,
     ),
 }
-"""Modules that can be imported but not used, with all that is in them."""
+"""Modules that a program can import, but none of whose names it can use, by the module's name."""
 
 VERSION_4: Mapping[str, tuple[str, ...]] = {
     "pybricks.iodevices": (*IO_DEVICES, "LWP3Device", "PUPDevice"),

@@ -13,7 +13,7 @@ from tuisim.engine.shim.pybricks.speaker import START_VOLUMES
 from tuisim.engine.shim.pybricks.tools import wait
 
 BEEPS_PAUSE_MS = 100
-"""Silence after each of several beeps."""
+"""Silence in ms after each tone of `beeps`."""
 
 _brick = hubs.EV3Brick()
 battery = _brick.battery

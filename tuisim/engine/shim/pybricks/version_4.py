@@ -35,13 +35,15 @@ from tuisim.engine.shim.pybricks.unsimulated import MODEL
 from tuisim.engine.shim.unsupported.modules import refused_part
 
 RANGES = (0, 2000), (50, 20_000)
-"""The speeds of a motor that a setting may ask for, even if no motor is so fast, and the accelerations."""
+"""Lowest and highest speed of a motor in °/s that a setting accepts, even if no motor is so fast, then the same for the
+acceleration in °/s².
+"""
 STALLED_TICKS = 25
-"""A motor that runs at a power and stands for 250 ms is stalled."""
+"""A motor that runs at a power counts as stalled after something has blocked it for this many ticks, 250 ms."""
 MIN_PROFILE_DEG = 5
-"""The least tolerance of the position that a program can choose for a motor."""
+"""The smallest tolerance of a motor's position in degrees; a smaller argument `profile` counts as this."""
 MIN_RADIUS_MM = 10
-"""Smallest radius of an arc."""
+"""Smallest radius in mm of an arc; a smaller one is an error."""
 
 
 class Stop(NamedEnum):
@@ -89,7 +91,7 @@ class Motor(motor.Motor):
         super().dc(max(-highest, min(highest, whole(duty))))
 
     _zero_deg = 0
-    """The angle, as the program counts it, of the mark on the shaft, where the motor began."""
+    """The motor angle in degrees, as `angle` now returns it, of the shaft's mark, where the motor was at the start."""
 
     def reset_angle(self, angle: float | None = None) -> None:
         """Make the motor show the angle `angle`, in degrees, at its present position.
@@ -215,7 +217,9 @@ class DriveBase(robotics.DriveBase):
     MIN_SIZE_MM = 1
 
     _stops: tuple[int, ...] = ()
-    """The decelerations of `straight` and `turn`, if `settings` has set any."""
+    """The decelerations of straight moves and of turns, in mm/s² and °/s², which `settings` has set; empty if they are
+    those of the firmware.
+    """
 
     def _take_place(self, earlier: robotics.DriveBase) -> None:
         if earlier.has_motor(self.left) or earlier.has_motor(self.right):

@@ -21,16 +21,18 @@ from tuisim.engine.shim.tones import Heard, beep_heard, file_heard, speech_heard
 from tuisim.engine.shim.unsupported.modules import refused_as
 
 Steps = Generator[int, None, int]
-"""A running line of the shell: it yields the ns that each sound or pause takes, and returns the exit status."""
+"""A generator that runs a line of the shell: it yields the ns that each sound or pause takes, and returns the exit
+status.
+"""
 
 Sink = Callable[[bytes], None]
-"""Receives the output of a program."""
+"""A function that receives each part of the output of a command."""
 
 Outcome = bytes | Heard | int
-"""Result of a program: the bytes that it writes, a sound, or the ns that it lets pass."""
+"""What a command of the shell does: it writes these bytes, makes this sound, or lets these ns pass."""
 
 PLAIN_FONT = "default8x16"
-"""Default font of `setfont`."""
+"""The console font that `setfont` sets if it is called without a name."""
 DEVICE_FOLDERS = ("/sys/", "/dev/")
 OPERATORS = "();<>|&"
 JOINTS = (";", "&&", "|")
@@ -47,7 +49,7 @@ class Call:
     joint: str = ";"
     """What joins the call to the one before: `;`, `&&`, or `|` for speech that `aplay` plays."""
     file: str = ""
-    """The device file that its output is written to; empty for none."""
+    """The device file to which `>` redirects the program's output; empty for none."""
 
     @property
     def name(self) -> str:
@@ -74,7 +76,8 @@ class Streams:
     output: Sink = own_output
     errors: Sink = own_errors
     folder: str = ""
-    """Base of relative paths; empty for the program's working directory."""
+    """The folder from which the process resolves relative paths; empty for the working directory of the user's program.
+    """
     speech: Heard | None = None
     """The speech that `espeak --stdout` has written for `aplay`; None if there is none."""
 
@@ -120,7 +123,7 @@ def parse_line(text: str) -> list[Call]:
 
 
 _RUNNERS = ("python", "python3", "micropython", "pybricks-micropython", "brickrun")
-"""Programs that run a program."""
+"""Commands that run a Python program, which the simulated shell refuses with a hint of its own."""
 
 
 def _name_instead(call: Call) -> str:
@@ -207,7 +210,7 @@ class Running:
         self._session = session
         self._steps = steps
         self.status: int | None = None
-        """Exit status of the commands; None while they run."""
+        """Exit status of the line of the shell; None while it runs."""
         self._due = session.now
         self._busy = False
         self.go_on()
@@ -355,4 +358,4 @@ COMMANDS: Mapping[str, Callable[[Shell, list[str], Streams], Outcome]] = {
     "cat": _cat,
     "sleep": _sleep,
 }
-"""The programs of the brick, by name."""
+"""The functions that carry out the commands of the brick's shell, by the command's name."""

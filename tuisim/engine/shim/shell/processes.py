@@ -29,9 +29,9 @@ from tuisim.engine.shim.sound import NO_PID
 from tuisim.engine.shim.tones import Heard
 
 Replace = Callable[[types.ModuleType, str, Callable[..., Any]], None]
-"""Replaces a function of a module, by its name."""
+"""A function that replaces a function of a module; it takes the module, the function's name and the replacement."""
 EXIT_SHIFT = 8
-"""Bits below the exit status in the result of `os.system`."""
+"""Number of bits below the exit status in the wait status that `os.system` returns."""
 
 
 class OutPipe(io.RawIOBase):
@@ -193,9 +193,9 @@ class System:
         self.session = session
         self.shell = shell
         self.module: Any = None
-        """The module `subprocess`, once it is imported."""
+        """The module `subprocess`; None until the program imports it."""
         self.options: Any = None
-        """The signature of the genuine `Popen`."""
+        """The signature of Python's own `Popen`; None until `subprocess` is imported."""
         self.processes: dict[int, Process] = {}
         self.pids = count(NO_PID + 1)
 

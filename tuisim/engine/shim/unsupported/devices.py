@@ -15,7 +15,7 @@ from tuisim.engine.shim.unsupported.modules import CAMERA, Hardware, refused_as
 SIMULATED = frozenset(
     {kind.driver_name for kind in SENSORS.values()} | {kind.driver_name for kind in KINDS.values()}
 )
-"""Drivers of the devices that a robot can have."""
+"""Names of the drivers of all sensors and motors that a simulated robot can have."""
 
 
 _LIGHT = "use a ColorSensor: it measures reflected and ambient light"
@@ -76,7 +76,7 @@ DRIVERS: Mapping[str, Hardware] = {
     "rcx-motor": Hardware("a motor without a rotation sensor", _MOTOR),
     "rcx-led": Hardware("a lamp on a motor port", "use Leds, the lights of the brick"),
 }
-"""Kinds of devices, by patterns of driver names; the first pattern that matches counts."""
+"""The hardware that is not simulated, by patterns of the driver's name; the first pattern that matches counts."""
 
 _OTHER = Hardware(
     "a device that tuisim does not know",
@@ -89,19 +89,23 @@ CLASSES: Mapping[str, Hardware] = {
         "a servo motor", "use a MediumMotor: on_to_position() turns it to an angle"
     ),
 }
-"""Kinds of devices that no robot can have, by the kernel's name of their class."""
+"""The hardware that is not simulated for the kernel's classes that no simulated robot has, by the class's name."""
 
 PORT_MODES: Mapping[str, Hardware] = {"dc-motor": DRIVERS["rcx-motor"], "led": DRIVERS["rcx-led"]}
-"""Port modes that are for a single kind of device."""
+"""The hardware that is not simulated for the modes of a port that serve only one kind of device, by mode."""
 
 _PORT = re.compile(r"(?:ev3-ports:)?(?:in[1-4]|out[A-D]):.")
-"""The beginning of an address behind a port, such as `ev3-ports:in1:i2c80:mux1`."""
+"""Matches the beginning of the address of a device that is connected through other hardware on a port, such as
+`ev3-ports:in1:i2c80:mux1`.
+"""
 ADDRESSES: Mapping[str, Hardware] = {
     "mux": Hardware("a sensor multiplexer", _MUX),
     "i2c": Hardware("an I2C sensor", _ALONE),
     "": Hardware("a device behind a multiplexer", _MUX),
 }
-"""Hardware that is connected through a port, by a part of its address."""
+"""The hardware that is not simulated for an address that `_PORT` matches, by a part of the address; the first part
+found counts.
+"""
 _BOARDS = ("spi0.1:", "serial0-0:", "ttyAMA0:", "pistorms:")
 _BOARD = Hardware(
     "a port of a BrickPi or PiStorms",
@@ -117,7 +121,7 @@ FOREIGN_MODES: Mapping[str, str] = {
     "COMPASS": "ht-nxt-compass",
     "PID": "ms-line-leader",
 }
-"""Modes of sensors that are not simulated, by the driver that is best known for the mode."""
+"""For each mode that only sensors have which are not simulated, the driver that is best known for it."""
 
 
 def of_driver(name: str) -> Hardware | None:

@@ -65,9 +65,10 @@ class Hardware:
 
     title: str
     instead: str
-    """What a program can do instead; may have fields of `Instead`."""
+    """What a program can do instead, for the error's hint; `told_to` fills in fields such as `{remote}` from `Instead`.
+    """
     names: tuple[str, ...] = ()
-    """The names that `from … import *` imports."""
+    """The names that `from … import *` imports from the module that controls the hardware."""
 
     def told_to(self, library: Library) -> Hardware:
         """Return this hardware with advice that uses the names of one library."""
@@ -130,7 +131,7 @@ ON_THE_BRICK: Mapping[str, Hardware] = {
     "pyaudio": _SOUND_CARD,
     "sounddevice": _SOUND_CARD,
 }
-"""Modules that can be imported but not used, by name."""
+"""Modules on a real brick that a program here can import but not use, as their hardware is not simulated, by name."""
 
 _PI = Hardware("the Raspberry Pi", "the simulated brick is an EV3: use {library}")
 _PI_CAMERA = Hardware("the camera of the Raspberry Pi", CAMERA)
@@ -161,7 +162,7 @@ ELSEWHERE: Mapping[str, Hardware] = {
         "the simulator ev3sim", "leave out its import: the rest of the program needs only {library}"
     ),
 }
-"""Modules that cannot be imported, by name."""
+"""Modules for other devices than the brick, whose import fails with an error about the hardware, by name."""
 
 PACKAGES: Mapping[str, str] = {
     "cv2": "opencv-python-headless",
@@ -172,10 +173,12 @@ PACKAGES: Mapping[str, str] = {
     "yaml": "PyYAML",
     "zmq": "pyzmq",
 }
-"""Names of packages that differ from the name of their module, by module."""
+"""The package to install for each module whose name differs from that of the package."""
 
 _ERRORS = ("Error", "Exception", "Timeout")
-"""Ends of the names of exceptions, which a program names in its handlers."""
+"""A name with one of these endings in a module that controls hardware is a class of exceptions, so that handlers can
+name it.
+"""
 
 
 def refused_as(kind: type[Exception], message: str, hint: str) -> Exception:
@@ -344,7 +347,7 @@ BLUETOOTH: Mapping[str, Any] = {
     "BDADDR_ANY": "00:00:00:00:00:00",
     "BDADDR_LOCAL": "00:00:00:FF:FF:FF",
 }
-"""Names of `socket` that are missing where Python was built without Bluetooth."""
+"""Values of the names that `socket` lacks where Python was built without Bluetooth."""
 
 
 def refuse_bluetooth(module: types.ModuleType, library: Library) -> None:
@@ -370,7 +373,7 @@ def refuse_bluetooth(module: types.ModuleType, library: Library) -> None:
 
 
 _TERMINALS = ("termios", "_curses")
-"""Modules whose errors end a program without a terminal."""
+"""Modules that raise their class `error` when a program reads single keys, as it has no terminal."""
 
 
 def point_at_keys(error: BaseException, library: Library) -> None:

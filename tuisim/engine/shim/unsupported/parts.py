@@ -31,7 +31,7 @@ REFUSED: Mapping[str, Mapping[str, str]] = {
     },
     "multiprocessing.shared_memory": {"SharedMemory": _THREADS},
 }
-"""Classes that cannot be instantiated and their alternatives, by module."""
+"""For each module, its classes whose constructors raise NotSimulated, with the reason or what to use instead."""
 
 _IN_CONTEXT = (
     "Array",
@@ -52,7 +52,9 @@ _IN_CONTEXT = (
     "SimpleQueue",
     "Value",
 )
-"""Members of `multiprocessing` for processes: some would start a process, the others would block forever."""
+"""The methods of the contexts of `multiprocessing` that are refused: some would start a process, the others would block
+forever.
+"""
 
 
 def refuse_contexts(module: Any) -> None:
@@ -112,11 +114,11 @@ PROCESSES = {
     "multiprocessing.pool": keep_thread_pool,
     "multiprocessing.process": refuse_process,
 }
-"""Functions that refuse the parts of a module that would start processes on this computer."""
+"""Functions that patch a module after its import, by its name, so that it starts no processes on this computer."""
 
 
 OTHER_BOARDS = ("ev3dev.brickpi", "ev3dev.brickpi3", "ev3dev.pistorms")
-"""Modules of the older library for boards that are no EV3."""
+"""Modules of python-ev3dev, the older library, for other boards than the EV3; their import raises NotSimulated."""
 
 
 def refuse_board(module: types.ModuleType) -> NoReturn:

@@ -9,7 +9,9 @@ from typing import Any
 
 MAX_GREY_SATURATION = 40
 MAX_DARK_VALUE = 1
-"""Up to this saturation, or this value, a measurement is a grey, if the program distinguishes only ideal colours."""
+"""Saturation and value, in percent, up to either of which a measurement counts as a grey, if the program distinguishes
+only full colours, black, greys and white.
+"""
 
 
 def measure_hsv(red: int, green: int, blue: int) -> tuple[int, int, int]:

@@ -18,7 +18,7 @@ from tuisim.engine.shim.unsupported.modules import Hardware, refused_part
 
 RAW = Hardware("the raw report of a game controller", "use its joysticks, triggers and buttons")
 FULL = 100
-"""How far a hand presses a stick or a trigger, in percent."""
+"""How far, in percent, a pressed stick or trigger is moved: a key press of the user moves it all the way."""
 
 
 class Controller(Connected):

@@ -19,7 +19,9 @@ MAX_NUMBER = 99
 MAX_FRAMES = 255
 POLL_MS = 10
 TURNS = Side.TOP, Side.RIGHT, Side.BOTTOM, Side.LEFT
-"""The sides that can be up, by the number of quarters by which a picture is then turned clockwise on the matrix."""
+"""The sides of the hub that can be up; a side's index is the number of quarter turns, clockwise, of a picture on the
+matrix.
+"""
 
 
 def _spread_bits(bits: int) -> Pixels:

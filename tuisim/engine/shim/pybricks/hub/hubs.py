@@ -22,7 +22,7 @@ BUTTON_NAMES: Mapping[str, Button] = {
     "enter": Button.CENTER,
     "up": Button.BLUETOOTH,
 }
-"""The buttons of hubs, by their names in the session."""
+"""The buttons of hubs as Pybricks' `Button`, by their names in `DeviceSession.pressed`."""
 
 
 class Charger(Connected):

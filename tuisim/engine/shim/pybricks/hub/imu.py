@@ -18,7 +18,7 @@ from tuisim.engine.shim.pybricks.robotics import DriveBase
 
 GRAVITY_MM_S2 = 9806.65
 STILL_DPS = 2.0
-"""Below this rate a hub is at rest, if nothing moves its motors."""
+"""A hub whose motors coast and do not turn is at rest if it turns more slowly than this, in degrees per second."""
 UNCORRECTED = (
     STILL_DPS,
     2500.0,
@@ -27,9 +27,9 @@ UNCORRECTED = (
     (GRAVITY_MM_S2, -GRAVITY_MM_S2) * 3,
     360.0,
 )
-"""The settings of a hub that was not calibrated."""
+"""What `settings` of the IMU returns for a hub that was not calibrated, in the order of its arguments."""
 MAX_CORRECTION_DEG = 15
-"""Largest difference between the correction of the heading, or a scale, and a whole turn, in degrees."""
+"""A program may set the heading correction, or the scale of an axis, to 360 degrees per turn plus or minus this."""
 
 
 class Accelerometer(Connected):

@@ -18,7 +18,9 @@ _PACKED = (
 CHARACTERS = tuple(_PACKED[at : at + 5] for at in range(0, len(_PACKED), 5))
 """The pictures of the characters from the blank to `~`."""
 DIGITS = ["33333", "11111", "31323", "31313", "23311", "32313", "32333", "31111", "33033", "33313"]
-"""The last two columns of each; as a number, `<< 3` moves them to the first two."""
+"""The pictures of the digits 0 to 9, which use only the right two columns of the matrix; `<< 3` moves such a picture to
+the left two.
+"""
 ICONS: Mapping[str, str] = {
     "UP": "4evee",
     "DOWN": "eeve4",

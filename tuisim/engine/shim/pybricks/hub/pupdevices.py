@@ -26,7 +26,7 @@ class Sensor(ev3devices.Sensor):
     """Base class of sensors on a port of a hub."""
 
     SWITCH_US: ClassVar[int] = 0
-    """How long the first reading in another mode takes."""
+    """Time in µs that the first reading takes after the sensor's mode was changed."""
 
     def _read_as(self, mode: str, convert: Callable[[int], Result]) -> Result:
         """Measure in a mode, and return the result of `convert` for the measured number.
