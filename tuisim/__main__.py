@@ -9,7 +9,7 @@ from contextlib import suppress
 from typing import NoReturn
 
 COLLECT_EVERY = 300_000
-"""New objects after which the collector looks for cycles: a start makes many, and keeps nearly all of them."""
+"""After so many new objects, the garbage collector looks for cycles; a start makes many, and keeps nearly all."""
 
 
 def main() -> NoReturn:

@@ -23,13 +23,13 @@ class View:
     """The user's settings of a chart, besides its variables and its time range."""
 
     facets: bool = False
-    """Whether there is one chart for each variable."""
+    """Whether each ticked variable has a chart of its own, above each other; else one chart shows all."""
     marks: bool = False
-    """Whether points are drawn instead of lines."""
+    """Whether the samples are drawn as points instead of lines."""
     hold: bool = False
-    """Whether lines are step lines, which keep a value until the next one."""
+    """Whether each line keeps the value of a sample until the next sample (steps), instead of going straight there."""
     against: tuple[str, str] | None = None
-    """Pair of x and y to draw against each other, instead of all variables over time."""
+    """Names of the variables on the x and y axis of a path; None for a chart of all ticked variables over time."""
 
 
 def build_chart(model: AnalysisModel, view: View, columns: int, rows: int) -> ChartData:

@@ -33,11 +33,11 @@ class Crossing:
     """An instant at which a signal crosses a threshold."""
 
     sample: int
-    """Index of the first sample beyond the threshold."""
+    """Index, in the signal, of the first sample on the other side of the threshold."""
     time_s: float
-    """Time at which the line between the samples on either side meets the threshold."""
+    """Time at which the straight line between the samples before and after the crossing meets the threshold."""
     value: float
-    """The variable's value at that sample."""
+    """Value of the first sample on the other side of the threshold."""
     rising: bool
 
 
@@ -122,7 +122,7 @@ class Threshold(ValueCondition):
     """A condition on a variable, such as `Colour < 50`: that it falls below a value, rises above it, or changes."""
 
     hysteresis: float = 0.0
-    """The signal must pass the value by this margin on both sides."""
+    """How far the variable must be from the level, before and after it, for an event; in the variable's unit."""
 
     def __str__(self) -> str:
         width = f" +- {self.hysteresis:g}" if self.hysteresis else ""
@@ -160,9 +160,9 @@ class Event:
     threshold: Threshold
     crossing: Crossing
     row: int
-    """Row of the table with the first sample beyond the threshold."""
+    """Row of the table with the first sample on the other side of the threshold."""
     since_s: float
-    """Time since the variable's previous event; NaN for the first."""
+    """Seconds since the previous event of the same variable; NaN for the first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,7 +170,7 @@ class CommandChoice:
     """A choice among the events: the commands that programs gave to motors and sensors."""
 
     words: str
-    """Words in the names of part and call; empty for all commands."""
+    """Words to find in the names of the commanded part and of the called function; empty for all commands."""
 
     def __str__(self) -> str:
         return f"command {self.words}".rstrip()
@@ -185,7 +185,7 @@ class CommandRow:
 
     index: CommandIndex
     number: int
-    """Number of the event in the index."""
+    """Number of the command in the index of commands."""
     row: int
     """Row of the table with the first sample after the command."""
     run: int

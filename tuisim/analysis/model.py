@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from tuisim.logs.log import Log
 
 _MIN_SHOWN_SHARE = 1e-9
-"""Smallest visible fraction of the whole time."""
+"""Smallest time range that zooming in can show, as a fraction of the whole time of the log."""
 _SORTED_AT_ONCE = 200_000
 """Up to this number of values, quantiles take only some hundredths of a second."""
 
@@ -56,18 +56,18 @@ class AnalysisModel:
         self.selected: str = ticked[0].name if ticked else ""
         """Variable whose samples the cursor moves along."""
         self.row: int = 0
-        """The current row of the table, shown by all panes."""
+        """Index of the table's row at which the cursor is; all panes show it."""
         self.mark_s: float | None = None
-        """The second cursor of the chart, A."""
+        """Time of the chart's second cursor, named A; None if it is not set."""
         self.limits: Limits | None = None
-        """Visible time range, None for all."""
+        """Time range in s that the chart shows; None for the whole time."""
         self.alignment = TIME
         self._reports: dict[str, BandReport] = {}
         self._reported: tuple[list[BandReport], list[Band]] = ([], [])
-        """Cache of the bands of the latest reports."""
+        """The latest band reports, and all their bands in one list, so that the list is built only once."""
         self.events = Events(opened.runs)
         self.definitions: dict[str, str] = {}
-        """Definitions of derived variables as typed, by name."""
+        """Definitions of derived variables, as the user typed them, by the name of the variable."""
         self._words: dict[str, str] = {}
         self._summaries: dict[str, Summary] = {}
         self._places = opened.find_notes_files()
@@ -489,4 +489,4 @@ class AnalysisModel:
 
 
 RECKONING = "reckoning"
-"""Definition text for dead reckoning from the wheel encoders."""
+"""What the user types instead of a definition, to derive the robot's path from the wheel encoders."""

@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from PIL.Image import Image
 
 _NEAR_PX = 14.0
-"""Pins nearer than this share a ring: their labels would cover each other."""
+"""Pins nearer to each other than this share a ring on the picture: their labels would cover each other."""
 _RING_PX, _TEXT_PX = 7.0, 15.0
-"""Radius and size of letters, as in the templates of pages."""
+"""Radius of a ring, and font size of its label, in pixels of the picture; the templates of pages have the same."""
 _LETTER_PX = 0.62 * _TEXT_PX
-"""Width of a letter, on average."""
+"""Average width of a letter of a label."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +45,7 @@ class Label:
     right_px: float
     baseline_px: float
     is_at_end: bool
-    """Whether the right edge of the text is beside the ring."""
+    """Whether the ring is at the right of the label: the label's right edge is next to the ring."""
 
     @property
     def x_px(self) -> float:

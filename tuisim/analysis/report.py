@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 Explain: TypeAlias = Callable[[StoredRun], Sequence[str]]
 SUFFIXES = (".html", ".htm")
 MAX_BANDS = 100
-"""Maximum number of rows of the table of bands, and of shaded bands of a variable: more hide its curve."""
+"""Maximum number of rows in the table of bands; the chart of a variable with more bands shades none."""
 MAX_STATISTICS = 1000
 """Maximum number of rows of the table of statistics: a program may print a variable for each row."""
 _WIDTH_PX = 960
@@ -348,7 +348,7 @@ def _build_note_table(model: AnalysisModel) -> Table:
 
 
 Fact = tuple[str, ...]
-"""A label, and its text for each run."""
+"""A row of the table of facts: a label, and then the fact's text for each run."""
 
 
 def list_run_facts(runs: Sequence[StoredRun]) -> list[Fact]:
@@ -395,7 +395,7 @@ _TRAVELLED: Mapping[str, tuple[str, ...]] = {
     "light noise": ("world", "noise", "light"),
     "motor noise": ("world", "noise", "motor"),
 }
-"""Paths of facts in the metadata of an export."""
+"""Facts of the runs of an exported log: the label, and the keys that lead to the fact in the log's metadata."""
 
 
 def _read_path(entry: Mapping[str, Any], path: Sequence[str]) -> str:
@@ -432,7 +432,7 @@ def _list_further_settings(spec: RunSpec) -> str:
 
 
 _PREDEFINED = {"none": "none", "imports": "the imports", "preloaded": "the imports and the parts"}
-"""By prelude."""
+"""What a program with a prelude need not define, in words, by the name of the prelude."""
 _FACTS: Mapping[str, Callable[[StoredRun], str]] = {
     "run": lambda run: f"{run.number or ''} {run.id}".strip(),
     "made": lambda run: run.created[:19].replace("T", " ") + " UTC",
@@ -457,4 +457,4 @@ _FACTS: Mapping[str, Callable[[StoredRun], str]] = {
 }
 """Facts of a run by their labels. To add a fact, add a line here."""
 _CHANGING_FACTS = frozenset({"run", "made"})
-"""Facts that differ between identical runs."""
+"""Labels of the facts that differ even between runs of one program with the same settings and seed."""

@@ -81,15 +81,15 @@ class LogRequest:
     """The request to open a log: a file, or runs of the store."""
 
     file: str = ""
-    """Path of the file, or `-` for the standard input; empty for runs."""
+    """Path of the log file to open, or `-` for the standard input; empty if stored runs are opened."""
     runs: tuple[str, ...] = ()
-    """The runs: numbers, ids, or `last`."""
+    """The stored runs to open, each by its number, its id, or `last`; empty for a file."""
     telemetry: bool = False
-    """Whether to open the telemetry of the first run instead of samples."""
+    """Whether to open the first run's telemetry, which has a row for each tick, instead of its printed samples."""
     choices: ReadChoices = NO_CHOICES
-    """The choices of how to read a file."""
+    """The user's choices of how to read the file, such as its separator."""
     is_remembered: bool = False
-    """Whether the choices were made before, for a file that is still the same."""
+    """Whether `choices` were stored when the user opened the same, unchanged file before."""
 
     @property
     def is_readable_again(self) -> bool:
@@ -152,9 +152,9 @@ class OpenedLog:
     request: LogRequest
     log: Log
     runs: tuple[StoredRun, ...] = ()
-    """In the order of the log's run column; none for a file."""
+    """The runs of the log, in the order of its run column; none for a file."""
     part: float = 1.0
-    """Share of the log that has been read, 0 to 1; NaN if unknown."""
+    """Share of the file that has been read, 0 to 1; NaN if the size of the file is unknown."""
     done: bool = True
 
     def find_notes_files(self) -> tuple[Path, ...]:
@@ -185,9 +185,9 @@ class OpenedLog:
 
 
 NOTES_FILE = "notes.jsonl"
-"""Name of the file with the notes in the folder of a run."""
+"""Name of the file, in the folder of a run, with the user's notes on the run."""
 _HASHED_BYTES = 1 << 16
-"""Bytes at the beginning of a file that identify it, also if it grows."""
+"""The first line, within so many bytes, identifies a log file for its notes, also when the file grows."""
 _MAX_NOTES_BYTES = 64 << 20
 
 
@@ -197,11 +197,11 @@ class Note:
 
     text: str
     start_s: float
-    """Time of the sample, or beginning of the span."""
+    """Time of the sample that the note is about, or beginning of the time span."""
     stop_s: float
-    """End of the span; the same as `start_s` for a sample."""
+    """End of the time span that the note is about; the same as `start_s` for a sample."""
     variable: str = ""
-    """Name of the variable; empty for none in particular."""
+    """Name of the variable that the note is about; empty if it is about none in particular."""
 
 
 def find_notes_file(path: Path) -> Path:

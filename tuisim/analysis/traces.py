@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     from tuisim.logs.log import Log, Series
 
 MAX_VISIBLE = 4
-"""Number of variables that are visible at first."""
+"""Maximum number of variables that are visible when a log is opened."""
 _LIGHT = "_red"
-"""Suffix of the red light columns of colour sensors."""
+"""Ending of the names of columns with the reflected red light of a colour sensor."""
 _MAX_SPAN_RATIO = 5.0
-"""Ratio of spans: a variable that spans less than 1 / this of a scale is drawn on its own one."""
+"""Variables share a scale only if it spans at most so many times what each of them spans; else one looks flat."""
 
 
 class LogTrace(Trace):

@@ -22,7 +22,7 @@ from tuisim.settings.build import build_run_spec, list_ineffective
 from tuisim.settings.presses import press_actions
 
 _NO_NAME = frozenset("\n(=:")
-"""Characters of a text that is a program, not the name of one."""
+"""A text with one of these characters is the text of a program, not the name of a program or file."""
 
 
 def read_source(program: str | Path | Callable[[], object]) -> ProgramSource:

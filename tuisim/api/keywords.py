@@ -17,7 +17,7 @@ _NAMES = {
     "--expr": "expressions",
     "--scheduler": "scheduler",
 }
-"""The arguments by their flags on the command line."""
+"""Names of keyword arguments by the command-line option that they stand for; errors name the argument instead."""
 
 
 _OTHER_NAMES = {
@@ -26,14 +26,14 @@ _OTHER_NAMES = {
     "delimiter": "separator",
     "sep": "separator",
 }
-"""The names that other libraries have for an argument, with the name here."""
+"""Names of arguments in other libraries, and the arguments of tuisim that mean the same, for hints."""
 
 
 _ELSEWHERE = {
     "goals": "Run.judge(goals)",
     **dict.fromkeys(("constants", "metrics", "columns", "parameters"), "tuisim.experiment"),
 }
-"""The function or class that has an argument, for hints."""
+"""Arguments that another function has, and the name of that function, for hints."""
 
 
 def build_keyword_error(name: str, known: Sequence[str]) -> ConfigError:

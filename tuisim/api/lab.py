@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
 MOTION = ("x_mm", "y_mm", "heading_deg")
 _OF_HUB = {"profile": PYBRICKS_4.name, "for_brick": True}
-"""The settings of a robot with a hub, as a program for one decides them."""
+"""Usual settings of a robot with a Pybricks hub; a program for such a hub gets the same when it is run."""
 
 
 class Lab:

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 Metric = Callable[[Run], Any]
 _TICKS = "(columns)"
-"""The cell of a row that holds the columns of its run over time, until the table is made."""
+"""Key at which a row carries the telemetry columns of its run, packed as text, until `take_columns` removes them."""
 
 
 class Measures:

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 _NOT_VARIED = ("press",)
-"""Options whose value is a list."""
+"""Options that take a list as one value: a list for them is not a list of values to vary."""
 
 
 def run_experiment(
@@ -202,7 +202,7 @@ class Study:
         self._variants = list_variants({**options, **constants})
         several = [name for name, value in options.items() if _is_varied(name, value)]
         self.columns = {*constants, *several}
-        """The constants and options that have a column."""
+        """Names of the constants, and of the options with several values, which have a column in the table."""
 
     def build_plan(self, seeds: Iterable[int] | None, keep: str, *, returns_files: bool) -> Plan:
         """Return the plan of all runs.

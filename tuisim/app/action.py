@@ -28,10 +28,10 @@ from tuisim.terminal.text_runs import escape_markup
 from tuisim.terminal.textual_internals import find_bindings, is_leaving
 
 ACT = "act"
-"""Key of the style metadata that names the action of a clickable word."""
+"""Key in the metadata of a Rich style: its value is the id of the action that a click on the text runs."""
 
 KeyWord = tuple[str, str]
-"""The display name of a key, and in words what the key does."""
+"""The display name of a key, and what the key does, in words."""
 
 Host = TypeVar("Host")
 Now = TypeVar("Now")
@@ -50,22 +50,22 @@ class Action(Generic[Host, Now]):
 
     id: str
     key: str
-    """The key in Textual's notation; several keys are separated by commas."""
+    """The key that runs the action, in Textual's notation; several keys are separated by commas."""
     title: str
     group: str
     do: Callable[[Host], None]
     why_not: Callable[[Now], str] = lambda _: ""
     """Returns why the key is unavailable now; empty if it is available."""
     footer: str = ""
-    """Short label for the footer; empty leaves the key out of it."""
+    """Short label of the action in the footer; empty if the footer does not show the action."""
     shown_key: str = ""
-    """Display name of the key, if it differs from that of `key`."""
+    """Display name of the key for people; empty for the usual display name of `key`."""
     footer_key: str = ""
-    """Display name of the keys in the footer, if its entry stands for two keys."""
+    """Display name of the keys in the footer, if one entry stands for two actions; empty for that of `key`."""
     words: str = ""
     """Further words by which the command palette finds the action."""
     comes_first: bool = False
-    """Whether the key comes before those of the widget with the focus; `check_action` of the app leaves it to them."""
+    """Whether the app gets the key before the widget with the focus, unless `check_action` of the app refuses it."""
 
     @property
     def key_label(self) -> str:
@@ -99,7 +99,7 @@ _LABELS = {
 _WORDS = frozenset(
     {"space", "home", "end", "escape", "enter", "tab", "delete", "backspace", "insert"}
 )
-"""Keys whose names are their display names."""
+"""Keys in Textual's notation that are shown to the user under the same name."""
 
 
 def label_of_key(key: str) -> str:
@@ -223,7 +223,7 @@ class ActionHost(DOMNode):
 _ALWAYS = ("palette", "help", "quit", "leave")
 
 FIELD_KEYS: tuple[KeyWord, ...] = (("enter", "apply"), ("esc", "leave"), ("tab", "next"))
-"""Keys of a text field, where letters are not keys."""
+"""Keys in the footer while a text field has the focus, which takes all letters itself."""
 TYPING_KEYS: tuple[KeyWord, ...] = (
     ("esc", "done"),
     ("^s", "save"),
@@ -236,10 +236,10 @@ TYPING_KEYS: tuple[KeyWord, ...] = (
     ("^y", "redo"),
     ("^/", "comment"),
 )
-"""Keys while the user types in the program."""
+"""Keys in the footer while the user types in the program."""
 
 CLICKED_KEYS: tuple[KeyWord, ...] = (("letters", "edit"), ("esc", "keys"), ("^p", "all"))
-"""Keys after a click into the program: the next letter starts typing."""
+"""Keys in the footer after a click into the program: the next letter starts typing."""
 
 
 def find_panel_keys(focused: DOMNode | None) -> tuple[KeyWord, ...]:
@@ -256,7 +256,7 @@ BETWEEN_GROUPS = " │"
 _FEWEST = 9
 _FEWEST_AT = 80
 _COLUMNS_FOR_ONE = 20
-"""A footer has `_FEWEST` entries at `_FEWEST_AT` columns, and one more for each further 20: nobody reads more."""
+"""A footer has at most `_FEWEST` entries at `_FEWEST_AT` columns, and one more for so many further columns."""
 
 
 def find_max_entries(columns: int) -> int:
@@ -417,7 +417,7 @@ class KeyFooter(ActionWords):
 
 
 COLUMN_CELLS = 50
-"""A column of keys is not made narrower than this to fit another one next to it."""
+"""Minimum width in cells of a column of the key table; a narrower table has fewer columns."""
 
 
 def build_key_table(groups: Mapping[str, Iterable[KeyWord]], width: int) -> Text:
@@ -462,7 +462,7 @@ def _distribute_groups(groups: list[_Group], count: int) -> list[list[_Group]]:
 
 
 _KEY_CELLS = 9
-"""Width of the keys of a group; longer ones, of a few groups, do not widen the other groups."""
+"""Minimum width in cells of the key names beside what the keys do, so that most groups of keys are aligned."""
 
 
 def _build_column(groups: list[_Group]) -> Group:

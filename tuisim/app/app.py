@@ -90,14 +90,14 @@ if TYPE_CHECKING:
     from tuisim.terminal.pixels import Pixels
 
 FIRST_PAINT_DELAY_S = 0.05
-"""Seconds until large data is sent: before that, the screen is painted more than once."""
+"""Seconds for which the app sends no large pictures after the start: the screen is painted several times."""
 MAX_PROBLEMS = 3
 """Maximum number of errors in `config.toml` that are shown."""
 _CURSOR_QUERY = "\x1b[6n"
 _REST_GAP_S = 0.25
 """Seconds between two polls of the run while nothing happens."""
 _WARM_UP_AFTER_S = 0.3
-"""Seconds until the process that forks runs is started: until then, the first paint or frame needs the processor."""
+"""Seconds after a start until the process that forks runs is started: the first frame needs the processor."""
 _STARTING_S = 0.25
 _START_GAP_S = 0.004
 """Seconds between two polls of a starting run, for at most `_STARTING_S`, so that its first tick is drawn without a
@@ -105,7 +105,7 @@ delay."""
 _AWAKE_S = 1.0
 """Seconds for which a run that goes on is polled at the full frame rate after something has happened."""
 _SETTLE_S = 0.1
-"""The same without such a run: what the user changes is changed by then."""
+"""The same if no run goes on: after this time, the screen shows all that the user has changed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,18 +118,19 @@ class AppSettings:
     world_file: Path | None = None
     """The world file that was opened, to be watched and saved again."""
     program: Program | None = None
-    """The program to open; None for none."""
+    """The program to open; None to open no program."""
     goals: GoalsFile | None = None
-    """The goals that runs are judged by."""
+    """The goals that runs are judged by; None without goals."""
     lesson: Lesson | None = None
-    """The lesson to open, of which `program`, `settings` and `goals` are; None for none."""
+    """The lesson to open; None without one. `program`, `settings` and `goals` are then those of the lesson."""
     lessons_folder: str | None = None
-    """The folder of own lessons, if one was named."""
+    """Folder of own lessons that the user has named; None if the user has named none."""
     welcomes: bool = False
-    """Whether to show the welcome, at the first start or if there is recent work: the command line names nothing to
-    open."""
+    """Whether to show the welcome at the first start or if there is recent work: the command line names nothing to
+    open.
+    """
     replay: StoredRun | None = None
-    """A stored run to show, of which `spec` and `program` are; None for none."""
+    """A stored run to show; None for none. `spec` and `program` are then those of the stored run."""
     panels_on: frozenset[str] = field(default_factory=frozenset)
     """Ids of panels shown whatever the size of the terminal."""
     panels_off: frozenset[str] = field(default_factory=frozenset)
@@ -143,7 +144,7 @@ class AppSettings:
     speed: float = 1.0
     """Speed of runs: 1.0 is real time, 0 as fast as possible."""
     fps: int = DEFAULT_FPS
-    """Most frames a second."""
+    """Maximum number of frames per second."""
     colors: str = "auto"
     """Colour depth, one of `COLOR_DEPTHS`; it must be set before the terminal is opened."""
     cells: str | None = None
@@ -151,7 +152,7 @@ class AppSettings:
     pixels: str = AUTO
     """Whether pictures have pixels, one of `PIXELS`."""
     from_config: tuple[str, ...] = ()
-    """The settings of the run that come from `config.toml`, in words."""
+    """The settings of the run that come from `config.toml`, each in words."""
     decided: Decided = field(default_factory=Decided)
     """The settings of the run that the text of the program decides."""
 
@@ -191,7 +192,7 @@ class LabApp(PanelMessages):
         self.feed = PanelFeed(self.panel_area, self.run_controller)
         self._drawn: tuple[Any, ...] = ((None,),)
         self._footed: tuple[Any, ...] = ()
-        """The part of the state that the footer shows now."""
+        """The part of the app's state from which the footer was last drawn."""
         runs = self.run_controller
         panels = self.panel_area
         self.goals = GoalsController(self, runs, panels, settings.goals)
@@ -208,9 +209,9 @@ class LabApp(PanelMessages):
         self._frame_timer: Timer | None = None
         self._awake_until_s = 0.0
         self._starting_until_s = 0.0
-        """While a run starts, when to stop waiting for its first tick; else 0."""
+        """While a run starts, the monotonic time until which its first tick is awaited; else 0."""
         self._last_words = ""
-        """How the run ended, for the output panel once it has shown every row."""
+        """How the run ended, in words; the output panel adds them after its last row. Empty once they are added."""
 
     def _take_config(self, config: UserConfig) -> tuple[ConfigError, ...]:
         """Bind the keys in the user's settings; return the errors in these settings."""

@@ -27,9 +27,9 @@ Made = TypeVar("Made")
 Given = ParamSpec("Given")
 
 FINISHES_WITHIN_S = 1.0
-"""Seconds for which an app that has been left waits for files that are being written."""
+"""Maximum number of seconds that the app, when the user quits, waits for files that are being written."""
 COLLECT_EVERY = 50_000
-"""New objects after which the collector looks for cycles: no key waits for it longer than a frame takes."""
+"""After so many new objects, the garbage collector looks for cycles; that takes less time than a frame."""
 _LOOK_S = 0.02
 _threads: list[Thread] = []
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from tuisim.engine.runs.recorded_run import Recording
 
 BRANCH_TAG = "branch-of-"
-"""Prefix of the tag that names the run from which another one branched off."""
+"""Prefix of the tag of a branch; the number of the run that it branched off from follows, or that run's id."""
 
 _WORLD_FIELDS = (
     "x_mm",
@@ -47,7 +47,7 @@ class Branch:
     then: protocol.Message | None
     """The user action at the instant of the branch; None for none."""
     goes_on: bool
-    """Whether the run continues when it reaches the instant; else it stays paused there."""
+    """Whether the branch continues when it reaches the instant at which it begins; else it pauses there."""
 
     @property
     def time_s(self) -> float:

@@ -21,11 +21,11 @@ _WRITES: Mapping[str, str] = {
     "instrumentation": "export",
     "arrays": "export",
 }
-"""The action that writes a file of what a panel shows, by panel."""
+"""Ids of the actions that write what a panel shows to a file, by the id of the panel."""
 _READING_COLS = 60
-"""Columns of the readings below a picture."""
+"""Width in characters of the readings that are copied below a picture of the world."""
 _PICTURE = "screenshot"
-"""The action for all other panels."""
+"""Id of the action that writes the screen to a file, for panels that are not in `_WRITES`."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -35,7 +35,7 @@ SHOWS_PANELS = frozenset({PauseReason.STEP, PauseReason.LINE, PauseReason.BREAK}
 """Pause reasons that open the debug panels automatically."""
 
 _GOES_ON = frozenset({PauseReason.STEP, PauseReason.LINE, PauseReason.INSTANT})
-"""Pause reasons with which a step, or the start for one, ends: the next of the waiting steps follows."""
+"""Pause reasons after which the next of the waiting steps begins; any other reason discards the waiting steps."""
 
 
 class DebugController:
@@ -68,7 +68,7 @@ class DebugController:
         self._paused: Paused | None = None
         """The pause of the live run; None while it runs."""
         self.position: Position | None = None
-        """The past position in view, exact to the line; None for the newest one, or if only its tick is known."""
+        """The past position in view, exact to the line; None if the newest is in view, or if only the tick is known."""
         self._frame = 0
         self._thread = ""
         self.replay = ReplayDebugger(self._handle_arrival, self._report_missing, self._handle_now)

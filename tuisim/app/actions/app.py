@@ -114,7 +114,7 @@ _NUDGES = (
     ("shift + arrow", "Move the robot 1 mm"),
     ("a f", "Turn the robot 5° to the left, to the right; also ctrl + ← →"),
 )
-"""The ten keys that move or turn the robot, in three rows."""
+"""The ten keys that move or turn the robot, in three rows for the key table, and what each does."""
 
 
 def show_help(context: ActionContext) -> None:

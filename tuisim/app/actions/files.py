@@ -25,7 +25,7 @@ from tuisim.settings.options import Settings
 from tuisim.settings.preferences import get_preference, keep
 
 _LOGGING_MAT = "Grey_bands"
-"""The mat proposed for a new program in place of the empty one, on which there is nothing to log."""
+"""The mat of a new program if the user would have the empty mat, on which there is nothing to log."""
 
 if TYPE_CHECKING:
     from tuisim.analysis.source import LogRequest
@@ -68,7 +68,7 @@ def open_path(context: ActionContext, path: str) -> None:
 
 
 _OPENABLE_SUFFIXES = frozenset({".py", ".toml"})
-"""Suffixes of files that are no logs."""
+"""Suffixes of programs and worlds; the app opens a file with any other suffix as a log."""
 
 
 def open_brought(context: ActionContext, path: Path) -> None:
@@ -87,9 +87,9 @@ def open_brought(context: ActionContext, path: Path) -> None:
 
 
 _WELCOMED_PREFERENCE = "welcomed"
-"""Name of the preference that the welcome has been shown."""
+"""Name of the stored preference that says that the user has seen the welcome."""
 EXAMPLE = "log_greys.py"
-"""The program that the welcome offers."""
+"""File name of the example program that the welcome offers to open."""
 
 
 def greet(context: ActionContext) -> None:

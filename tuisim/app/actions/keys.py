@@ -32,7 +32,7 @@ APP = "App"
 
 
 LabAction: TypeAlias = Action[ActionContext, Situation]
-"""One line of `ACTIONS`."""
+"""An action of the lab's screen, such as a line of `ACTIONS`."""
 
 
 def _can_run(now: Situation) -> str:
@@ -672,7 +672,7 @@ RUN_KEYS = frozenset(
     if action.group in (PROGRAM, DEBUG, TIME)
     for key in action.key.split(",")
 )
-"""Keys that start a run, or need one."""
+"""Keys of the actions that start a run or need one."""
 
 
 def _find_next_steps(now: Situation) -> tuple[str, ...]:
@@ -698,9 +698,9 @@ def _find_next_steps(now: Situation) -> tuple[str, ...]:
 
 
 PAGES = frozenset({"lesson-up", "lesson-down"})
-"""Ids of the actions of the page keys."""
+"""Ids of the actions of PageUp and PageDown, which turn the pages of a lesson's text, or of the code."""
 TEXT_KEYS = frozenset({"lesson-back", "lesson-on"})
-"""Ids of the actions that scroll the lesson whatever has the focus."""
+"""Ids of the actions that scroll the text of the lesson, whatever widget has the focus."""
 
 
 def list_footer_actions(

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from tuisim.app.actions import ActionContext
 
 SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 16.0, 0.0)
-"""Speeds that `[` and `]` step through; 0 is as fast as possible."""
+"""Speeds that `[` and `]` step through, as multiples of real time; 0 is as fast as possible."""
 
 
 def run(context: ActionContext) -> None:

@@ -40,7 +40,7 @@ class AnalyserApp(TerminalApp):
         super().__init__(picture_mode)
         self.request = request
         self.failure: TuisimError | None = None
-        """The error that prevented the log from being opened."""
+        """The error because of which the log could not be opened; None without one."""
 
     def on_mount(self) -> None:
         """Show the analyser; when the user closes it, end the app."""

@@ -38,11 +38,11 @@ if TYPE_CHECKING:
 
 _EVENTS = Style(color=design.EVENT, bold=True)
 _MAX_BANDS = 100
-"""More bands of a variable are not shaded: they are too narrow to be told apart."""
+"""Maximum number of shaded bands of a variable; if it has more, none is shaded, as they are too narrow to see."""
 _MIN_FACET_ROWS = 6
-"""Minimum height of the chart of one variable."""
+"""Minimum height in rows of each chart, if each variable has a chart of its own."""
 FACETS_ROWS = 2 * _MIN_FACET_ROWS
-"""Below this height there is one chart for all variables."""
+"""Minimum height in rows of the panel for a chart of each variable; a lower panel has one chart for all."""
 
 
 @dataclass(slots=True)
@@ -50,12 +50,12 @@ class ChartOptions:
     """The options of the analyser's chart that the user switches by keys."""
 
     facets: bool = False
-    """One chart for each ticked variable."""
+    """Whether each ticked variable has a chart of its own."""
     marks: bool = False
     hold: bool = False
-    """Hold each value until the next one (steps), instead of a straight line between them."""
+    """Whether each line holds a value until the next sample (steps), instead of going straight to the next value."""
     against: tuple[str, str] | None = None
-    """The variables to draw against each other, x and y, instead of all over time."""
+    """Names of the variables on the x and y axis of a path; None for a chart of all variables over time."""
 
 
 class LogChart(LinesPanel):
@@ -90,7 +90,7 @@ class LogChart(LinesPanel):
         self._pictures: list[tuple[int, ChartPicture]] = []
         self._model: AnalysisModel | None = None
         self._pointed_s: float | None = None
-        """The time below the pointer."""
+        """Time in the chart below the mouse pointer; None if the pointer is elsewhere."""
 
     def set_model(self, model: AnalysisModel) -> None:
         """Show another log in the chart, or the same log with other options."""

@@ -13,7 +13,7 @@ from tuisim.terminal.text_runs import Line
 Cells = tuple[str, ...]
 
 GAP = 2
-"""Columns between those of a table."""
+"""Number of blank cells between two columns of a table, if the terminal is wide enough."""
 
 
 def build_rows(

@@ -48,14 +48,14 @@ if TYPE_CHECKING:
     import pandas as pd
 
 _MAX_BELOW = 20
-"""Maximum number of lines below the rows that count for the height of a pane."""
+"""Maximum number of lines of text below the rows that are counted when the pane's height is chosen."""
 _MEASURED = 1000
-"""In panes with more rows than this, only the visible ones determine the widths of the columns."""
+"""In panes with more rows than this, column widths follow the visible rows only, as measuring all takes long."""
 SEARCHED_AT_ONCE = 20_000
-"""Up to this many rows, the search for bands takes a few hundredths of a second."""
+"""Maximum number of rows in which bands are searched for directly, which takes a few hundredths of a second."""
 
 _MIN_ROWS = 10
-"""Rows that a pane may always have; lines that it does not need beyond them are left to the chart."""
+"""A pane may be at least so many rows high; a pane with more content may be as high as its content."""
 
 EMPTY = ("This log is empty. T shows the telemetry of a run.",)
 
@@ -66,17 +66,17 @@ class Pane:
 
     title: str
     rows: Callable[[AnalysisModel], Sequence[Cells]]
-    """Returns the rows of the pane as texts; none for the table, which has too many and is drawn by itself."""
+    """Returns the cells of each row of the pane; none for the table pane, which draws its many rows itself."""
     heads: Cells
     below: Callable[[AnalysisModel], Sequence[str]] = lambda _: ()
-    """Returns the lines of text below the rows."""
+    """Returns the lines of text below the rows of the pane."""
     empty: str = ""
     wraps: bool = False
-    """Whether its last column is prose, which wraps instead of being cut."""
+    """Whether the last column of the pane is prose, which wraps instead of being cut."""
     block: int = 0
-    """Index of the first of the last columns, if these are shown all or not at all; else 0."""
+    """Index of the column from which on all columns are shown or none; 0 if any may be left out alone."""
     spare: Cells = ()
-    """Headings of the columns that are left out first if not all fit, in this order."""
+    """Headings of the columns that are left out first, in this order, if the pane is too narrow for all."""
 
 
 Item = TypeVar("Item")
@@ -464,11 +464,11 @@ class PaneView(LinesPanel):
         super().__init__()
         self.name_shown = "table"
         self.chosen = 0
-        """Index of the selected row, in all panes but the table."""
+        """Index of the selected row of the pane; the table has the cursor of the log instead."""
         self._model: AnalysisModel | None = None
         self._complain = complain
         self._busy: dict[str, AnalysisModel] = {}
-        """For each pane whose content is being computed, the model for which that is done."""
+        """The analysis model for which the content of a pane is being computed, by the name of the pane."""
 
     @property
     def lines(self) -> int:

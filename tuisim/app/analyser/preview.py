@@ -24,7 +24,7 @@ from tuisim.logs.preview import Preview
 
 _ROWS = 30
 _COLUMNS = 60
-"""Maximum numbers of rows and columns that are shown."""
+"""Maximum number of columns that the preview shows, and `_ROWS` that of its rows."""
 _FIELDS = {
     "header": "Heading",
     "separator": "Separator",
@@ -32,9 +32,9 @@ _FIELDS = {
     "time": "Time",
     "unit": "Unit",
 }
-"""The choices by name, with their labels, whose first letters are their keys."""
+"""Names of the reading choices, and the label of each in the dialog; the label's first letter is its key."""
 _COLUMN_CHOICES = ("header", "separator")
-"""Choices that change which columns there are."""
+"""Names of the choices on which the columns of the log depend; a change resets the chosen columns."""
 
 
 class PreviewDialog(Dialog[ReadChoices]):

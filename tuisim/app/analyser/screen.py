@@ -39,11 +39,11 @@ from tuisim.terminal.cell_view import LinesView
 
 _POLL_S = 1.0
 _WIDE_COLS = 120
-"""From this width on there is room for the world and a widget beside it."""
+"""Minimum width of the screen at which a lesson and the world are both shown beside the log."""
 _NARROW_COLS = 80
-"""Below this width a high screen has no room for the world beside a chart and a table."""
+"""In a high screen that is narrower than this, the world is below the log instead of beside it."""
 _PATIENCE = 10.0
-"""The pause between two readings of a growing log, as a multiple of the last reading time."""
+"""After a growing log was read, the app waits so many times as long as reading took before it reads it again."""
 
 Made = TypeVar("Made")
 
@@ -76,7 +76,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         self._beside = beside
         self._model: AnalysisModel | None = None
         self.searched = ""
-        """The last search text; empty for none."""
+        """The text that the user last searched for; empty for none."""
         self.job: TableTask | None = None
         """The current background job."""
         self._reading = False
@@ -84,7 +84,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         self._stamp: object = None
         """Length of the log when it was last read."""
         self._said: tuple[str, ...] = ()
-        """Notes on the reading of the log that were shown; a log has them before it is read to its end."""
+        """Notes about reading the log that the app has already shown, so that it shows none twice."""
         self.title_line = LinesView()
         self.title_line.id = "title"
         self.chart = LogChart()

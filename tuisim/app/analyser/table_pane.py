@@ -18,9 +18,9 @@ HEAD = Style(color=palette.BLUE, bold=True)
 HERE = Style(color=palette.WHITE, bgcolor=design.CHOSEN)
 CHOSEN = Style(color=palette.YELLOW, bold=True)
 MAX_CELL = 28
-"""Characters of the widest cell."""
+"""Maximum width of a column of the table, in characters; longer texts are cut."""
 _SAMPLED = 40
-"""Number of visible rows, from the first, that determine the widths of the columns."""
+"""Number of rows, from the first visible one, whose texts determine the widths of the columns."""
 
 
 def build_table_lines(model: AnalysisModel, width: int, height: int) -> list[Line]:

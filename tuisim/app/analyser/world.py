@@ -40,7 +40,7 @@ _POSE = ("x_mm", "y_mm", "heading_deg")
 _PLAIN, _DIM = Style(color=palette.INK), Style(color=design.SUBTITLE)
 _HERE = Style(color=palette.WHITE, bgcolor=palette.HERE, bold=True)
 _BESIDE_COLS = 60
-"""In a narrower terminal the chart gets the whole width, until the key of the world is pressed."""
+"""In a narrower terminal the world is hidden, and the chart has the whole width, until the user shows the world."""
 NO_POSES = "This log has no robot positions"
 
 

@@ -32,7 +32,7 @@ _ADVICE = (
 )
 _NAME_CELLS = 9
 _SAMPLES = 4
-"""Samples along each side of a point."""
+"""Each point of the picture is the mean of so many samples in each direction, which smooths its edges."""
 
 
 def draw_test_card(cols: int, rows: int, cell_px: tuple[int, int]) -> Pixels:

@@ -49,10 +49,10 @@ TABLES = (".toml", ".json")
 TEXTS = (".txt", ".log")
 LOGS = (*LOG_SUFFIXES, *TEXTS)
 IMAGES = (".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff")
-"""Suffixes of the files that choosers list in a folder."""
+"""Suffixes of the picture files that choosers of mats list in a folder."""
 MAX_FILES = 200
 MAX_TRIED = 50
-"""Most files of the folder that are opened to check their format."""
+"""Maximum number of files of the folder that are opened to check their format; further files are not listed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +61,7 @@ class ChoiceGroup:
 
     title: str
     entries: Sequence[tuple[str, str, str]]
-    """The entries, each with its value, its name, and its title, which may be empty."""
+    """The entries of the group: the value that the dialog returns, the name, and the title, which may be empty."""
 
 
 def list_files(
@@ -435,11 +435,11 @@ def build_profile_chooser(plan: NextRun) -> Chooser:
 
 
 MAX_NAME_COLUMNS = 32
-"""Most columns of the list: a custom file may have any name."""
+"""Maximum width of the list of names in columns: the names of custom files may be long."""
 
 
 _STALE_S = 0.15
-"""Seconds for which the picture of another mat may stay beside the title of the chosen one."""
+"""Seconds for which the previous mat's picture may stay on the screen while that of the chosen mat is read."""
 
 
 class MatPicker(Chooser):

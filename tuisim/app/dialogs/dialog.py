@@ -32,10 +32,10 @@ from tuisim.terminal.textual_internals import HookedScreen, find_bindings
 Result = TypeVar("Result")
 
 _HEIGHTS = [(0, "-low"), (18, "-high"), (34, "-roomy")]
-"""Classes of a dialog by the rows of the terminal."""
+"""CSS classes of a dialog, each with the number of rows of the terminal from which on it applies."""
 
 WIDTHS = [(0, "-narrow"), (80, "-broad")]
-"""Classes by the columns of the terminal, of dialogs in which a picture is beside a list, but below it if narrow."""
+"""CSS classes of dialogs with a picture, by the columns of the terminal: beside the list, or below it if narrow."""
 
 _ENTER = re.compile(r"\bEnter\b(?: (\w+))?")
 _IMPERATIVES = {"applies": "apply", "goes": "go"}
@@ -67,11 +67,11 @@ MOVE_KEYS = [
         ("pageup", "page_up"),
     )
 ]
-"""The keys that move the selection of a list also while a field has the focus."""
+"""Bindings of the keys that move the selection of a list even while a text field has the focus."""
 
 _BETWEEN = " · "
 _HINT_EDGES = 6
-"""Cells of a frame that hints in its border cannot have."""
+"""Cells of a dialog's bottom border that are left free of hints: its corners, and the space around the hints."""
 _TRANSPARENT = Color(0, 0, 0, 0)
 
 

@@ -42,7 +42,7 @@ class SkeletonSensor(NamedTuple):
     """The words and expressions for one sensor of the usual robot, from which the text of a new program is composed."""
 
     noun: str
-    """The sensor in words."""
+    """What the sensor is called in the dialog's list, and in sentences about a program."""
     sample: str
     """Name of the samples that the program prints."""
     value: str
@@ -50,9 +50,9 @@ class SkeletonSensor(NamedTuple):
     made: str
     """Expression that makes the object, with class and port, as in the prelude."""
     goes_on: str
-    """Condition under which the robot drives on."""
+    """Python condition on the reading under which the robot of the new program drives on."""
     method: str
-    """Method of the sensor's object in Pybricks."""
+    """Method of the sensor's object that returns the reading in Pybricks."""
     hub_made: str
     """Expression that makes the object in Pybricks on a PrimeHub, with class and port."""
     speeds: tuple[int, int] = (50, 50)
@@ -147,7 +147,7 @@ _SAYS = {
 _EXPLAINS = "# Chooses the mat, and defines tank_drive, colorLeft and other names.\n"
 _EXPLAINS_BRICK = "# Chooses the mat; the program runs as on a brick or hub.\n"
 BRICK_MAGIC = "sim_magic", "--profile ev3"
-"""Magic and words of a program with imports: it runs as on the brick."""
+"""Name of the magic, and its options, in the first line of a new program that runs as on the brick."""
 
 
 def build_program_text(mat: str, sensor: str, skeleton: Skeleton) -> str:

@@ -21,12 +21,12 @@ from tuisim.terminal.text_runs import cut
 
 _WIDTH = 74
 _BESIDE = 10
-"""Width of the frame in cells, and how many of them borders, padding and scroll bar take."""
+"""Cells of the frame's width that borders, padding and scroll bar take; `_WIDTH` is the frame's width in cells."""
 _OUTSIDE = 4
-"""Cells beside the frame in a narrow terminal."""
+"""Cells that the frame leaves free at both sides together if the terminal is narrow."""
 _SHOW = "show or hide "
 GUIDE_PREFIX = "?"
-"""Before a question to the guide, where a palette returns the id of an action."""
+"""The palette returns this and a question if the user searches the guide; else it returns an action's id."""
 _QUESTION_WORDS = (
     "how",
     "what",
@@ -44,9 +44,9 @@ _QUESTION_WORDS = (
     "is",
 )
 _ALIKE = 0.75
-"""How much a mistyped word is like the right one, at least, as `difflib` compares them."""
+"""Minimum similarity, from 0 to 1 in the measure of `difflib`, of a mistyped word to the word that it may mean."""
 _MIN_ROWS, _OTHER_ROWS = 16, 5
-"""Minimum number of rows of a long list, and the number of rows of the frame around it."""
+"""Rows of a long list on a low terminal; `_OTHER_ROWS` is the number of rows of the dialog around the list."""
 
 
 class Entry(NamedTuple):
@@ -57,9 +57,9 @@ class Entry(NamedTuple):
     group: str = ""
     key: str = ""
     words: str = ""
-    """Further words by which the entry is found."""
+    """Further words by which a search finds the entry."""
     works: bool = True
-    """Whether choosing the entry has an effect now."""
+    """Whether choosing the entry has an effect now; else it is greyed."""
 
 
 def find_entries(entries: Sequence[Entry], typed: str) -> list[Entry]:

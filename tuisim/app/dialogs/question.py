@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from tuisim.app.branch import Branch
 
 Answer = tuple[str, str]
-"""The key of an answer, which is the dialog's result, and in words what it does."""
+"""The key that chooses the answer, which is also what the dialog returns, and what the answer does, in words."""
 
 
 def _compose_answers(answers: Iterable[tuple[str, str, str]]) -> Iterator[Static]:
@@ -172,10 +172,10 @@ class LeaveQuestion(Dialog[bool]):
 _LAST_WORD = re.compile(r"`[^`]+$|[^\W\d]\w*$")
 
 _LOW = 30
-"""Rows of a terminal that is low."""
+"""In a terminal with fewer rows, the dialog is brief if the user needs to see what is below it."""
 
 Form = tuple[str, str]
-"""An accepted form, and what it means."""
+"""A form in which the user may type the text, such as an example, and what it means."""
 
 
 class LineInput(Input):

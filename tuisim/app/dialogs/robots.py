@@ -31,7 +31,7 @@ PROGRAM_ROBOT = "*program"
 
 _LABEL, _VALUE = Style(color=palette.SOFT), Style(color=palette.WHITE)
 _OTHER_ROWS = 12
-"""Rows of the dialog beside those of the picture and of the parts."""
+"""Rows of the dialog that neither the picture of the robot nor the list of its parts takes."""
 _MIN_ROWS, _MAX_ROWS = 6, 16
 
 

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from tuisim.engine.runs.recorded_run import Recording
 
 MAX_LISTED = 300
-"""Most runs listed at once; a search finds the others."""
+"""Maximum number of runs in the list; a search finds the others."""
 
 
 def find_runs(runs: Iterable[RunInfo], search: str) -> list[RunInfo]:
@@ -79,21 +79,21 @@ def _format_date(run: RunInfo) -> str:
 _COLUMNS = {"run": 5, "when": 11, "program": 12, "mat": 10, "end": 10, "s": 6, "samples": 7}
 """Columns of the list and their widths in cells; a note may follow them."""
 _MORE_CELLS = {"program": 10, "mat": 5}
-"""How much wider a column is in a wide terminal."""
+"""By how many cells a column of the list is wider if the terminal has at least `_WIDE_COLUMNS` columns."""
 _WIDE_COLUMNS = 120
 _NUMBERS = ("run", "s", "samples")
-"""Columns whose texts stand at the right."""
+"""Columns of the list whose texts are aligned at the right."""
 _LEFT_OUT = {
     80: (),
     58: ("mat", "samples"),
     47: ("when", "mat", "samples"),
     0: ("when", "mat", "s", "samples"),
 }
-"""Columns of the list that are left out, by the least number of columns of the terminal."""
+"""Columns that the list leaves out in a terminal with at least so many columns; the first fitting key counts."""
 _MIN_NOTE_COLUMNS = 100
-"""Columns of a terminal from which the list has notes."""
+"""Minimum number of columns of the terminal for which a line of the list ends with a note on the run."""
 _OTHER_ROWS = 15
-"""Rows of the dialog around its list, with the path."""
+"""Rows of the dialog around its list, including those of the selected run's path."""
 _MIN_LIST_ROWS = 5
 
 
@@ -201,7 +201,7 @@ class RunChooser(ListDialog):
         self._left_out = compared.run_id if compared else ""
         self._runs: list[RunInfo] = []
         self._looked_at = ""
-        """Id of the run whose path is shown."""
+        """Id of the run whose path is shown below the list."""
 
     def compose_content(self) -> ComposeResult:
         yield Input(
@@ -317,7 +317,7 @@ class RunsChooser(RunChooser):
     def __init__(self) -> None:
         super().__init__()
         self._marked: list[str] = []
-        """Ids of the marked runs, in the order in which they were marked."""
+        """Ids of the runs that the user has marked, in the order in which the user marked them."""
 
     def on_descendant_focus(self) -> None:
         """Show in the frame the keys that mark runs: while the text field has the focus, they are `↓`, then space."""

@@ -61,7 +61,7 @@ class FileDialog(Dialog[Path]):
         super().__init__()
         self._proposed = proposed
         self._agreed = ""
-        """The target that the user has agreed to replace."""
+        """The typed path of an existing file that the next Enter replaces, as the dialog has told; empty for none."""
         self._writing = False
 
     def compose_content(self) -> ComposeResult:

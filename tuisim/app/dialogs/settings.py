@@ -21,7 +21,7 @@ from tuisim.engine.files import Scalar
 from tuisim.settings.user_config import FILE, SETTINGS, THEME, Section, Setting, UserConfig
 
 Change = Callable[[Setting, Scalar | None], None]
-"""Writes a setting and applies it; None for the usual value. Raises TuisimError."""
+"""Writes a setting to `config.toml` and applies it; None restores the setting's default. Raises TuisimError."""
 
 
 _NAME_CELLS = 13

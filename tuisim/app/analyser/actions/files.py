@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from tuisim.app.analyser.screen import LogScreen
 
 MAX_COPIED = 10_000
-"""Most rows to copy: terminals drop longer texts."""
+"""Maximum number of table rows that are copied to the clipboard: terminals drop longer texts."""
 _CHARTS = (
     (".svg", "vector graphics, sharp at any size"),
     (".png", "pixels"),

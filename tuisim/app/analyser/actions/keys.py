@@ -23,7 +23,7 @@ APP = "App"
 
 
 LogAction = Action[LogScreen, int | None]
-"""One line of `ACTIONS`; whether it is available depends on the number of rows."""
+"""An action of the log's screen; its availability depends on the number of rows, None if no log is open."""
 
 
 def _log(rows: int | None) -> str:
