@@ -91,11 +91,11 @@ class Page:
     part: GuidePart
     title: str
     about: str
-    """A sentence for the contents."""
+    """A sentence that says what the page is about, for the guide's table of contents."""
     words: str
-    """Further words for the search."""
+    """Further words by which the search finds the page, separated by blanks."""
     source: str
-    """Markdown below the title, with the marks of tables."""
+    """The page's Markdown below its title, with marks in place of the tables that are made from the code."""
 
     def list_headings(self) -> list[str]:
         """Return the headings of the sections of a page, as readers see them."""

@@ -13,7 +13,7 @@ from tuisim.guide.search import SET_IN, SearchResult
 from tuisim.terminal.text_runs import Line
 
 _CLEAR_COLUMNS = 2
-"""Rows of a table with so many columns need no heads."""
+"""A row of a table with at most this number of columns is shown without the heads of the columns."""
 _CODE_BELOW = re.compile(r"(?<=:)\n\s*\n|\n\s*\n(?=    )")
 """Matches the gap before the code that belongs to a passage."""
 _MARK = re.compile(r"\A(?:- |\d+\. )")
@@ -23,13 +23,13 @@ _NOTE = re.compile(r" {2,}#")
 """Matches the gap before a comment beside code."""
 _SENTENCE_END = re.compile(r"(?<=[.:!?]) (?=[\w`*])")
 _PREFIX_LETTERS = 4
-"""Matches that have these first letters in common count as one word."""
+"""Matched words whose first letters, this many, are the same count as one word."""
 _SCRIPT_COLUMNS = ("group", "id")
-"""Columns of the table of keys that tell a reader of one row nothing."""
+"""Columns of the table of keys that an excerpt leaves out, as they tell the reader of one row nothing."""
 _CACHED_TEXTS = 256
 """The most texts whose lines are stored, enough for several questions."""
 _MIN_LINES = 3
-"""The fewest lines, of text or of code, that make sense by themselves."""
+"""Fewest lines that the text of an excerpt gets, and fewest lines of code among which the best one is looked for."""
 
 
 def draw_excerpt(

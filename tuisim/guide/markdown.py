@@ -20,7 +20,7 @@ from tuisim.base import palette
 from tuisim.terminal.text_runs import Line, Run
 
 _GAP = 2
-"""Cells between two columns."""
+"""Blank cells between two columns of a drawn table."""
 _INDENT = 2
 _PAIR = 2
 

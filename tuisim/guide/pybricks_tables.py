@@ -8,7 +8,7 @@ from tuisim.guide.tables import Table, code
 
 _PROFILES = (LEGO_MICROPYTHON, PYBRICKS_4)
 _WHEELS = ((55.5, 104), (56, 114), (56, 180), (43.2, 120), (68.8, 150))
-"""Diameter and track of usual robots in mm; the first is that of the official driving base."""
+"""Wheel diameter and axle track in mm of usual robots; the first robot is the official driving base."""
 
 
 def list_motors() -> Table:

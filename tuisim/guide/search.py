@@ -28,9 +28,11 @@ from tuisim.guide.catalogue import load_pages
 from tuisim.guide.tables import build_markdown
 
 _MIN_LETTERS, _ENDING_LETTERS = 4, 2
-"""The fewest letters of a word that must match, and how many letters at its end need not."""
+"""A word matches a word of a question that begins like it: all letters but the last two must be equal, and at least
+four.
+"""
 _PLAIN = ("not", "one")
-"""Words of a question that `compile_pattern` leaves out, as they say too little."""
+"""Words of a question that `compile_pattern` leaves out, as an excerpt should not be chosen because it has them."""
 
 
 @cache
@@ -46,27 +48,34 @@ def load_questions() -> Mapping[str, Mapping[str, tuple[str, ...]]]:
 _HEADING = re.compile(r"^##+ (.+)$", re.MULTILINE)
 _FENCED = re.compile(r"^```(.*)\n((?:.*\n)*?)```$\n?", re.MULTILINE)
 _PASSAGE_END = re.compile(r"(?<!:)\n\s*\n(?!    )|\n(?=- |\| |\d+\. )")
-"""A passage is a paragraph, with a text set in below it or what follows its colon, an item of a list or a row of a
-table."""
+"""Matches the gap between two passages. A passage is an item of a list, a row of a table, or a paragraph with the
+indented text below it and, if it ends with a colon, what follows.
+"""
 _ITEM = re.compile(r"- |\| |\d+\. ")
 SET_IN = "    "
 """The beginning of each line of indented text, such as code."""
 _RULE = re.compile(r"[-| ]+")
 """Matches the line below the head of a table."""
 _NO_ANSWER = re.compile(r"# .*|")
-"""Matches the title of a page, which is no passage."""
+"""Matches the title of a page, or an empty text: neither is a passage."""
 _MIN_PREFIX_LETTERS = 3
-"""Letters from which a word may be the beginning of another."""
+"""An unknown word of a question with at least this number of letters also stands for the known words that begin with
+it.
+"""
 _MIN_MISTYPED_LETTERS = 5
-"""A shorter word is too much like many others to be corrected."""
+"""Fewest letters of an unknown word that is corrected to the most similar one: shorter words are like too many others.
+"""
 _ALIKE = 0.8
-"""A word with a typing error is as much like the right one, as `difflib` compares them."""
+"""Smallest similarity, as `difflib` computes it from 0 to 1, of an unknown word and the known word to which it is
+corrected.
+"""
 _PASSAGE_WEIGHT = 1.0
 _HEADINGS_WEIGHT = 0.6
 _PAGE_WORDS_WEIGHT = 1.0
 _WHOLE_PAGE_WEIGHT = 0.6
-"""How much the words of a passage count, those of its headings, the further words of its page, and the share of the
-question that is anywhere on its page."""
+"""The weights of four similarities with a question: of the passage's words, of its headings, of the further words of
+its page, and of the share of the question's words that are anywhere on its page.
+"""
 _ALL_QUESTIONS_WEIGHT = 1.0
 _NEAREST_QUESTION_WEIGHT = 0.5
 _SAME_QUESTION_WEIGHT = 1.5
@@ -80,18 +89,20 @@ neither figure by more than 3 %. The three weights of questions cost such new qu
 for the questions of the file, each of which must find its passage among the first two.
 """
 _MIN_STEM_WEIGHT = 0.05
-"""The least weight of a word, however common it is."""
+"""The smallest weight of a word in a question, which even the most common words have."""
 _MAX_RESULTS = 12
-"""The most passages that are found; further ones only share common words with the question."""
+"""Largest number of passages that a search returns for a question or a part of it; further ones only share common words
+with it.
+"""
 _SURE_RESULTS = 2
 _MIN_SHARE = 0.5
-"""The fewest passages that are found, however well they answer; a further one needs this share of the best one's
-score.
+"""A search returns the best `_SURE_RESULTS` passages, whatever their scores; a further passage needs this share of the
+best score.
 """
 _PART_BREAK = re.compile(r"[?!.;,]+\s+|\b(?:and|or|but|then)\b")
 """Matches the gap between two parts of a question."""
 _MIN_PART_WORDS = 2
-"""The fewest words of a part of a question."""
+"""Fewest words of a part of a question that is also looked for by itself."""
 
 _Stems: TypeAlias = frozenset[str]
 
@@ -101,9 +112,9 @@ class SearchResult:
     """A passage of the guide, such as a paragraph, that answers a question."""
 
     name: str
-    """The name of its page."""
+    """The name of the page that has the passage."""
     heading: str
-    """The heading of its section; empty for the beginning of the page."""
+    """The heading of the section that has the passage; empty for the beginning of the page."""
     passage: str
     """In Markdown: a paragraph, an item of a list or a row of a table."""
     head: str = ""
@@ -394,12 +405,12 @@ def search(question: str) -> list[SearchResult]:
 _DENIES = re.compile(
     r"\b(?:cannot|can['’]?t|(?:do|does|did|is|are|was|were|has|have|had|wo|would|could|should)nt)\b|n['’]t\b"
 )
-"""`doesn't`, also typed as `doesnt`."""
+"""Matches the negation in a word such as `doesn't`, also typed as `doesnt`."""
 _CONTRACTED = re.compile(r"['’](s|m|d|re|ve|ll)\b")
 """Matches the ends of contracted words, such as `it's` and `I'm`."""
 _COLOR = re.compile(r"\bcolor(?!_)")
 _WORD = re.compile(r"\w+(?:→\w+)*")
-"""A word; words joined by an arrow, as `in→out`, are looked for together."""
+"""Matches a word; words that an arrow joins, as in `in→out`, count as one word."""
 _SAYS_NOTHING = """
 a about all am an and any are as at be because been being both but by can come could did do does doing each few for from
 further get gets go goes going had has have having he her here hers him his how i if in into is it its itself just look

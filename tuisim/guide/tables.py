@@ -33,7 +33,9 @@ TABLES: Mapping[str, str] = {
     "pybricks-motors": "guide.pybricks_tables:list_motors",
     "pybricks-drive-bases": "guide.pybricks_tables:list_drive_bases",
 }
-"""MODULE:FUNCTION by name, imported on use: some load the app."""
+"""The function that returns each table of the guide, as MODULE:FUNCTION, by the table's name; modules are imported on
+use, as some load the app.
+"""
 
 _MARK = re.compile(r"^<!-- table: ([\w-]+) -->$", re.MULTILINE)
 

@@ -15,7 +15,9 @@ from tuisim.terminal.text_runs import Line
 
 _LETTERS = re.compile(r"[\W_]+")
 _LONG_PREFIXES, _SHORT_PREFIXES = (40, 20), (10, 5)
-"""Numbers of first letters by which the beginning of a passage is looked for, the most reliable number first."""
+"""How many of a passage's first letters are looked for on a drawn page to find the passage there; the most reliable
+number comes first.
+"""
 NO_WORDS = "No page has these words"
 
 

@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     import pandas as pd
 
 PER_S = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
-"""Arrow's units of time, by their number per second."""
+"""How many of each of Arrow's units of time make a second."""
 
 METADATA_KEY = b"tuisim"
-"""Key of the metadata in the schema of Parquet and Arrow files."""
+"""Key under which Parquet and Arrow files that tuisim writes have tuisim's metadata in their schema."""
 
 
 def build_text_array(texts: Sequence[str]) -> pa.Array:
@@ -166,7 +166,7 @@ def make_names_unique(names: Sequence[str], notes: Notes | None = None) -> list[
 
 _FILE_MAGIC = b"ARROW1"
 _DAMAGES = (pa.ArrowException, OSError, ValueError)
-"""Errors that damaged files raise."""
+"""Errors that the reading of a damaged file raises."""
 _CUT_OFF = "the file is truncated: only the readable part was read"
 
 
@@ -248,7 +248,7 @@ FORMATS: Mapping[bytes, Callable[[Path, Notes], Iterator[tuple[float, pa.Table]]
     _FILE_MAGIC: read_arrow,
     b"\xff\xff\xff\xff": read_arrow,
 }
-"""The readers by the first bytes of a file."""
+"""The functions that read a file part by part, each with the fraction read so far, by the first bytes of the file."""
 
 
 def _validate_batch(batch: pa.RecordBatch) -> pa.Table:

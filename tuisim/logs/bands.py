@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 NAN = float("nan")
 ONE_SAMPLE = "one sample"
-"""Marks a level that only the first or the last sample of the log has."""
+"""Marks, in the list of levels, a level that only the first or the last sample of the log has."""
 CUT_OFF = "cut off"
 """Stands for the width of a band on which the log begins or ends."""
 NO_EDGE = "no edge"
@@ -37,22 +37,22 @@ class Band:
 
     variable: str
     number: int
-    """From 1, in order of time."""
+    """Number of the band among those of its variable, from 1, in order of time."""
     start_s: float
-    """Time of its first sample."""
+    """Time of the band's first sample."""
     stop_s: float
-    """Time of its last sample."""
+    """Time of the band's last sample."""
     samples: int
     level: float
-    """Mean without strays."""
+    """Mean of the band's samples without strays."""
     spread: float
-    """Standard deviation of its samples without strays (divided by n - 1), 0 for a single sample."""
+    """Standard deviation of the band's samples without strays (divided by n - 1); 0 for a single sample."""
     strays: int
-    """Samples that lie far off."""
+    """Number of the band's samples that are far from its level."""
     grey: str
-    """Name of the nearest grey; empty if there is none, or if the variable is not a light level."""
+    """Name of the grey that is nearest to the level; empty if none is near, or if the variable is not a light level."""
     grey_percent: float
-    """The level of that grey."""
+    """The sensor's reading of the grey in `grey`, in percent; NaN if `grey` is empty."""
     true_level: float
     """The level, corrected for clamped noise near the ends of the scale."""
     start_mm: float
@@ -60,11 +60,13 @@ class Band:
     stop_mm: float
     """Distance driven at the last sample."""
     width_mm: float
-    """From the edge before it to the edge after it, where readings are halfway between two levels; NaN if unknown."""
+    """Distance driven from the edge before the band to the edge after it, where readings are halfway between two
+    levels; NaN if unknown.
+    """
     cut_off: bool
-    """Whether the log begins or ends on it, so that its width is not known."""
+    """Whether the log begins or ends on the band, so that the band's width is not known."""
     first_row: int
-    """Row of its first sample in the table, from 0."""
+    """Row of the band's first sample in the log's table, from 0."""
     last_row: int
 
     def describe_samples(self) -> str:
@@ -210,10 +212,14 @@ def build_band_report(log: Log, name: str, search: Search = find_plateaus) -> Ba
 
 _MAX_EDGE_MM = 100.0
 _MAX_EDGE_STEPS = 8
-"""A passage between two levels of more mm and more steps of the log is a slope: the spot of a sensor is far smaller."""
+"""Samples between two levels are a slope and no edge if they cover more than `_MAX_EDGE_MM` and are more than this
+many: the spot of a sensor is far smaller.
+"""
 
 _FAR_OF_STEP, _FAR_OF_SPREAD = 0.75, 4.0
-"""A sample between two levels is of a third one, farther from their middle than these parts of step and spread."""
+"""A sample between two levels belongs to a third level if it is farther from their middle than the sum of 0.75 times
+their difference and 4 times the larger of their spreads.
+"""
 
 
 @np.errstate(over="ignore", invalid="ignore")

@@ -15,31 +15,33 @@ from tuisim.base.errors import LogError
 from tuisim.logs.warnings import Notes
 
 BLOCK_BYTES = 4 << 20
-"""Bytes that are read and parsed at a time."""
+"""Bytes of a file that are read and parsed at a time."""
 
 MAX_LINE_BYTES = 1 << 20
 MAX_DOCUMENT_BYTES = 64 << 20
-"""Larger JSON documents, which may be a single line, are not read."""
+"""Largest size of a JSON document that is read as a whole, as it may be a single line; a larger one is an error."""
 
 _UTF_8 = "utf-8-sig"
 _GUESSES = {"cp1252": "Windows-1252", "gbk": "GBK", "shift_jis": "Shift-JIS"}
-"""Encodings that are guessed if a text is not UTF-8, with their names."""
+"""Python's names of the encodings, one of which is guessed if a text is not UTF-8, with the names for messages."""
 _find_high_bytes = re.compile(rb"[\x80-\xff]").findall
 _find_kanji_bytes = re.compile(rb"[\x81-\x9f]").findall
 _IN_WORDS = re.compile(rb"[a-z][\x92\xa0-\xff]{1,2}|[\x92\xa0-\xff]{1,2}[a-z]")
-"""Bytes of western letters, which stand beside others."""
+"""Matches one or two bytes of western letters above ASCII beside a letter from a to z, as in words."""
 
 
 _find_control_characters = re.compile(r"[\x01-\x08\x0e-\x1a\x1c-\x1f\x7f]").findall
 _MAX_CONTROL_CHARACTERS = 8
 _CONTROL_OF_TEXT = 0.04
-"""A text has fewer control characters than these, or they are a smaller fraction of it: random bytes have 0.11."""
+"""A file is no text if more than this fraction of its characters, and more than `_MAX_CONTROL_CHARACTERS`, are control
+characters: of random bytes, 0.11 are.
+"""
 _JUDGED_CHARACTERS = 20_000
-"""Characters of the beginning that show whether a file is a text."""
+"""Number of characters at the beginning of a file by which it is decided whether the file is a text."""
 _KINDS = "a log is CSV, Parquet, JSONL, Arrow or text"
 
 _COLOURS = re.compile(r"\x1b\[[\d;]*m")
-"""What a program writes to colour its lines in a terminal."""
+"""Matches an escape sequence by which a program colours its output in a terminal."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,7 +202,7 @@ class Readable(Protocol):
 
 
 _UNPACKED_BYTES = 1 << 12
-"""Unpacked at once; as many are lost where a file is damaged."""
+"""Bytes that are unpacked at a time; up to this number are lost before the place where a compressed file is damaged."""
 _CUT_OFF = "the compressed file is truncated or damaged: only the readable part was read"
 
 _CODECS = {b"\x1f\x8b": "gzip", b"BZh": "bz2", b"\x28\xb5\x2f\xfd": "zstd"}
@@ -225,10 +227,10 @@ _REFUSED = {
     b"%PDF-": "a PDF document",
     b"\x7fELF": "a program",
 }
-"""Formats that cannot be read, by their first bytes."""
+"""Formats of files that tuisim refuses to read, in words, by their first bytes."""
 
 MAGICS = (*_CODECS, *_REFUSED)
-"""First bytes of all known formats."""
+"""First bytes of all formats that are recognised here: the compressed ones, and those that cannot be read."""
 MAGIC_BYTES = max(map(len, MAGICS))
 
 

@@ -44,16 +44,17 @@ UNIT_WORDS = frozenset(
         "sequence",
     )
 )
-"""Further units in a row below names, such as an oscilloscope or a data logger writes it."""
+"""Further units that the row below the names of columns can have, such as an oscilloscope or a data logger writes it.
+"""
 _UNIT = r"^(?P<number>.*\d\.?)(?P<gap>\s*)(?P<unit>%|°\w?|[€$£¥]|[A-Za-zµΩ][A-Za-z0-9µΩ²/]{0,7})$"
 _JUDGED_CELLS = 10_000
-"""Cells of a column from which the form of its numbers is found."""
+"""Number of cells of a column, from its first one, by which the form of its numbers is found."""
 _CODED = pa.dictionary(pa.int32(), pa.string())
-"""Dictionary-encoded text."""
+"""Arrow's type of dictionary-encoded texts, which stores equal texts once."""
 _MIN_REPEATED = 4
-"""Texts are dictionary-encoded if each occurs at least this often, on average."""
+"""The texts of a column are dictionary-encoded if each text occurs in it at least this often, on average."""
 _MIN_CELLS = 100
-"""With fewer cells, texts are not dictionary-encoded."""
+"""The texts of a column are dictionary-encoded only if it has more than this number of cells."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +68,7 @@ class _NumberForm:
     words: str = ""
     """The form in words, such as that the numbers have a unit; empty for Python's own form."""
     decimal: str = ""
-    """The decimal sign, if no other one is possible."""
+    """The decimal sign of numbers in this form; empty if the form does not decide it."""
     is_hexadecimal: bool = False
 
 
@@ -222,7 +223,7 @@ class TypedColumns:
         self._notes = notes
         self._decimal = decimal
         self._columns: dict[str, _Column] = {}
-        """By name; missing while all cells of a column were empty."""
+        """The type and form of each column, by its name; a column whose cells were all empty so far is missing."""
 
     def list_plain(self) -> dict[str, pa.DataType]:
         """Return the types of the columns that pyarrow can parse itself, by column; the others are read as texts."""

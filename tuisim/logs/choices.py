@@ -16,7 +16,7 @@ WORDS = {
     "separator": tuple(SIGNS),
     "decimal": (".", ","),
 }
-"""What may be chosen, by name of the choice."""
+"""The words that the user can choose, by the name of the field of `ReadChoices`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,19 +30,19 @@ class ReadChoices:
     time: str | None = None
     """Column with the time; empty to count the rows; None to find it."""
     unit: str = ""
-    """Unit of numeric times, one of `WORDS["unit"]`."""
+    """Unit of numeric times, one of `WORDS["unit"]`; empty to find it."""
     value: tuple[str, ...] = ()
-    """Columns with values."""
+    """Names of the columns with values; empty to find them."""
     header: int = 0
-    """Line of a text with the names of the columns, from 1."""
+    """Number of the line of a text, from 1, that has the names of the columns; 0 to find it."""
     table: int = 1
-    """Which of several tables in a text, from 1."""
+    """Number of the table that is read, from 1, if a text has several."""
     encoding: str = ""
-    """Encoding of a text, by its name in Python, such as `cp1252`."""
+    """Python's name of a text's encoding, such as `cp1252`; empty to find it."""
     separator: str = ""
-    """The separator of the cells of a text, one of `SIGNS`."""
+    """The name of the separator of cells in a text, a key of `SIGNS`; empty to find it."""
     decimal: str = ""
-    """The decimal sign, one of `WORDS["decimal"]`."""
+    """The decimal sign of the numbers in a text, one of `WORDS["decimal"]`; empty to find it."""
 
     def __post_init__(self) -> None:
         for name, allowed in WORDS.items():

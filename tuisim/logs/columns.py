@@ -73,29 +73,31 @@ NAMES = (
     *(word for word in UNITS_S if len(word) > 1 and word.endswith("s")),
     *COUNTS,
 )
-"""Names of time columns, the most certain first: units, too, such as `ms`."""
+"""Names by which a column is recognised as the time, the most certain first; units such as `ms` are among them."""
 _WORDS = frozenset(word for word in NAMES if len(word) > 3 and word not in COUNTS)
-"""A rising column with one of these words in its name is a time, too: `sim_time`, `brick clock (ms)`."""
+"""Words in the name of a column by which it is the time if its values rise, as in `sim_time` and `brick clock (ms)`."""
 
 _UNIT = re.compile(
     r"(?:[ _]*[(\[](?P<bracket>[^)\]]*)[)\]]|\s*/\s*(?P<slash>[^\W\d_]+)|[._ ](?:in[_ ])?(?P<end>[^\W\d_]+))$"
 )
-"""The unit at the end of a name: `time (ms)`, `Time [s]`, `t/s`, `timestamp_ms`, `time in ms`."""
+"""Matches the unit at the end of a column's name: `time (ms)`, `Time [s]`, `t/s`, `timestamp_ms`, `time in ms`."""
 _LONGEST_UNIT = 200
-"""Characters at the end of a name in which a unit is looked for: a search takes their square."""
+"""A unit is looked for in the last characters of a column's name, this many: the time of the search grows with their
+square.
+"""
 _SINCE_1970_S = (6.3e8, 4.2e9)
 """Seconds since 1970 of the years 1990 to 2103: times of this size are dates."""
 UNIT_NAMES = {seconds: words[-1] for seconds, words in _UNIT_WORDS_S.items()}
-"""Names of units of time by their seconds."""
+"""Names of the units of time, in the plural, by their length in seconds."""
 
 
 class TimeName(NamedTuple):
     """The name of a column, split into a word and a unit of time: `Time (ms)` into `time` and 0.001."""
 
     base: str
-    """Lower case, without its unit and without surrounding punctuation."""
+    """The column's name in lower case, without the unit and without punctuation around it."""
     unit_s: float | None
-    """Its unit in seconds, None if it has none."""
+    """The unit of time in the column's name, in seconds; None if there is none."""
 
 
 def parse_time_name(name: str) -> TimeName:
@@ -142,7 +144,7 @@ def find_epoch_unit_s(column: pa.ChunkedArray, unit_s: float | None) -> float | 
 JUDGED_TIMES = 1000
 _DAY_S = 86400.0
 _COUNTER = 2.0**32
-"""After as many milliseconds or microseconds the counter of a microcontroller begins again."""
+"""A microcontroller's counter of milliseconds or microseconds begins again at 0 after this number of them."""
 NO_ROWS: IntArray = np.empty(0, np.int64)
 
 
@@ -150,11 +152,11 @@ class Times(NamedTuple):
     """The times of a log in seconds, and the rows at which its clock or counter began again at 0."""
 
     seconds: FloatArray
-    """Shape (n,); NaN where there is no time."""
+    """The time of each row in seconds, shape (n,); NaN where a row has no time."""
     wraps: IntArray = NO_ROWS
     """Rows, from 0, in which a clock or a counter began again at 0; from there on its period is added."""
     period: str = ""
-    """The period in words, if there are wraps."""
+    """The period of the clock or counter in words; empty if it never began again."""
 
 
 def read_times(table: pa.Table, layout: Layout) -> Times:
@@ -232,9 +234,9 @@ def _count_seconds(spans: pd.Series) -> FloatArray:
 
 
 _MAX_TIMES = 500
-"""More columns are too many to choose from one by one."""
+"""Largest number of numeric columns that are offered as the time: nobody chooses from more one by one."""
 ROW = ""
-"""In place of a time column: the samples are counted."""
+"""Stands for the name of the time column if the log has none, and the rows are counted instead."""
 
 _JUDGED_CELLS = 20
 
@@ -252,7 +254,7 @@ _VARIABLE_NAMES = (
 )
 _VALUE_NAMES = ("value", "val", "y", "reading", "measurement")
 _NO_VALUES = ("run", "line", "row", "x_mm", "y_mm", "heading_deg")
-"""Columns of our own long frames with the origin of a sample."""
+"""Columns of tuisim's own tables with one sample in each row: they say where the sample is from, and are no values."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -260,19 +262,21 @@ class Layout:
     """Which columns of a table have the times, the names of variables, the values, and the numbers of the runs."""
 
     time: str = ROW
-    """Column with the time; `ROW` if the samples are counted."""
+    """Name of the column with the time; `ROW` if the log has none, and the rows are counted."""
     unit_s: float = 1.0
     """Unit of the time column in seconds."""
     since_first: bool = False
     """Whether the time column has numbers that are dates, shown as the time since the first one."""
     variable: str = ""
-    """Column with the variable of each row; empty if each column is a variable."""
+    """Name of the column that says which variable the value in a row is of; empty if each column of values is a
+    variable.
+    """
     values: tuple[str, ...] = ()
-    """Columns with values; only one if there is a `variable` column."""
+    """Names of the columns with values; only one if there is a `variable` column."""
     run: str = ""
     """Column with the number of the run; empty if there is only one run."""
     sure: bool = True
-    """Whether the names of the columns are clear; otherwise the user should be asked."""
+    """Whether the names of the columns leave no doubt about this layout; otherwise the user should be asked."""
 
     def describe_time(self) -> str:
         """Return a sentence that says which column is the time."""

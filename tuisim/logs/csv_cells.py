@@ -12,11 +12,14 @@ if TYPE_CHECKING:
     import pandas as pd
 
 _SIGNS = "=+@\uff1d\uff0b\uff0d\uff20-"
-"""Characters with which a formula begins, also in full width."""
+"""Characters with which a formula of a spreadsheet can begin, also in their full-width forms."""
 _RISKY = rf"'*(?:[ \f\v]*[{_SIGNS}]|[\t\r\n])"
-"""How a cell begins that a spreadsheet computes. Those with apostrophes count too, so that reading can undo writing."""
+"""Regular expression of the beginning of a cell that a spreadsheet may take for a formula. Apostrophes before it match
+too, so that reading can undo writing.
+"""
 WRITTEN = f"^'({_RISKY})"
-"""The beginning of a risky cell in a file; the group is its beginning once it is read."""
+"""Regular expression of the beginning of an escaped cell in a CSV file; the group is the beginning without the added '.
+"""
 
 _is_risky = re.compile(_RISKY).match
 _is_number = re.compile(NUMBER).fullmatch

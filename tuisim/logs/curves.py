@@ -14,25 +14,33 @@ from tuisim.logs.pieces import BoolArray, Signal, count_samples
 from tuisim.logs.stillness import PlateauArray, read_spans
 
 _BLOCKS = 16
-"""A longer plateau is looked at in so many parts: then edges are as steep for a slow robot as for a fast one."""
+"""A plateau of many samples is reduced to the means of about this many blocks: edges are then as steep for a slow robot
+as for a fast one.
+"""
 
 _MIN_BESIDE = 3
-"""Fewest samples on either side of a plateau that are looked at."""
+"""Fewest samples of a plateau that can be part of a curve, and of those before and after it together."""
 
 _BETTER = 0.8
-"""A curve explains samples better if the variance that it leaves is below this fraction of what a level leaves."""
+"""A plateau is part of a curve if the curve leaves less than this fraction of the variance of the plateau's samples
+about their level.
+"""
 
 _REACH = 3.0
-"""Samples of a plateau are clipped at this multiple of its spread from its level."""
+"""Samples of a plateau that are farther from its level than this multiple of its spread are moved to that distance."""
 
 _MAX_TREAD = 0.02
-"""Largest step of the scale of readings, as a fraction of the range, of which a curve is made."""
+"""Largest step of the scale of readings, as a fraction of the log's range, that short plateaus of a slow curve can have
+between them.
+"""
 
 _MIN_TREADS = 3
-"""Fewest steps in a row that are a curve."""
+"""Fewest short plateaus in a row, all rising or all falling, that count as a slow curve."""
 
 _TREAD_RISE = 2.5
-"""In its own length, a curve rises by fewer steps of the scale than this."""
+"""In a slow curve, the readings change by fewer steps of the scale than this, from a plateau to as many samples before
+or after it as it has.
+"""
 
 
 def find_curves(signal: Signal, plateaus: PlateauArray) -> BoolArray:

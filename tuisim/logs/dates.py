@@ -16,19 +16,19 @@ _YEAR_LAST = r"\d{1,2}[-/.]\d{1,2}[-/.]\d{4}"
 _MONTH_IN_WORDS = rf"\d{{1,2}}[-/. ]{MONTH}[a-z]*[-/. ]\d{{4}}"
 _CHINESE = r"\d{4}年\d{1,2}月\d{1,2}日?"
 _SHORT_YEAR = r"\d{1,2}[-/.]\d{1,2}[-/.]\d{2}"
-"""A date whose year has two digits; a time of day must follow."""
+"""Regular expression of a date whose year has two digits; it counts as a date only if a time of day follows."""
 _DATE = rf"(?:{_YEAR_FIRST}|{_YEAR_LAST}|{_MONTH_IN_WORDS}|{_CHINESE})"
 _GAP = r"(?:T|:|日 *| *[/,_] *| +(?:- +)?)"
-"""The characters between a date and its time of day."""
+"""Regular expression of the characters between a date and its time of day."""
 _PART = r"(?:[.,]\d+|:\d{3})"
-"""Fraction of a second."""
+"""Regular expression of the fraction of a second, after a point, a comma or a colon."""
 _ZONE = r"(?:Z| ?UTC| ?[+-]\d{2}(?::?\d{2})?)"
 _HALF = r"(?: ?[AaPp][Mm])"
-"""The half of the day, on a clock of 12 hours."""
+"""Regular expression of AM or PM after a time of day."""
 _MINUTES = r"\d{1,2}:\d{2}\.\d+"
-"""Minutes, and seconds with a fraction."""
+"""Regular expression of a time of day or a span without hours: minutes, and seconds with a fraction."""
 C_TIME = rf"[A-Z][a-z]{{2}} {MONTH} {{1,2}}\d{{1,2}} \d{{2}}:\d{{2}}:\d{{2}} \d{{4}}"
-"""A date and time as `time.ctime` writes it."""
+"""Regular expression of a date and time as `time.ctime` writes it."""
 MOMENT = (
     rf"(?:(?:{_DATE}{_GAP}|{_SHORT_YEAR} +)\d{{1,2}}:\d{{2}}(?::\d{{2}}{_PART}?)?(?:{_HALF}|{_ZONE})?"
     rf"|{_DATE}|\d{{8}}T\d{{4,6}}|\d{{1,2}}:\d{{2}}:\d{{2}}{_PART}?{_HALF}?|\d{{1,2}}:\d{{2}}{_HALF}|{_MINUTES}|{C_TIME})"
@@ -39,14 +39,15 @@ _DATE_CELL = re.compile(rf"\s*{_DATE}\s*")
 _CLOCK_CELL = re.compile(rf"\s*\d{{1,2}}:\d{{2}}(?::\d{{2}}{_PART}?)?{_HALF}?\s*")
 
 SPAN = r"^-?(?:\d+ days?,? )?\d+:\d{2}:\d{2}(?:\.\d+)?$"
-"""A time span as pandas or Python prints it, or hours, minutes and seconds."""
+"""Regular expression of a time span as pandas or Python prints it, or of hours, minutes and seconds."""
 _HOURS = r"^(\d{1,2}:\d{2})$"
-"""Hours and minutes."""
+"""Regular expression of hours and minutes without seconds."""
 CLOCK_OF_12_HOURS = rf"^\d{{1,2}}:\d{{2}}(?::\d{{2}}{_PART}?)?{_HALF}$"
 WORDS = rf"{_HALF}$|{C_TIME}|{_MONTH_IN_WORDS}"
-"""What pandas reads only if it looks at each date anew."""
+"""Regular expression of dates and times that pandas reads only with the format `mixed`, which examines each text anew.
+"""
 _USUAL = rf"{SPAN}|^\d{{4}}-\d{{2}}-\d{{2}}(?:$|[T ]\d{{2}}:\d{{2}}(?:$|[^,U]*$))"
-"""Texts that need no change."""
+"""Regular expression of dates and time spans that pandas reads without a change."""
 _REWRITTEN = (
     (r"^[\[(<] *| *[\])>]$", ""),
     (r" ?UTC$", "Z"),
@@ -58,7 +59,9 @@ _REWRITTEN = (
     (rf"^({_DATE}){_GAP}(\d{{1,2}}:)", r"\1 \2"),
     (r"^(\d{4})[/.](\d{1,2})[/.](\d{1,2})", r"\1-\2-\3"),
 )
-"""What is replaced, in this order; the year stays where it is."""
+"""Regular expressions and their replacements, in this order, which bring dates to one form, except that a year at the
+end of a date stays there.
+"""
 _YEAR_AT_END = r"^(?P<first>\d{1,2})[-/.](?P<second>\d{1,2})[-/.](?P<year>\d{4})"
 _PADDED = (
     (r"^(\d{4})-(\d)-", r"\1-0\2-"),

@@ -37,7 +37,7 @@ SIGNALS = {
     "average": "centred rolling mean of that many samples",
     "resample": "samples at a fixed period in seconds",
 }
-"""Functions besides `FUNCTIONS`, with their descriptions."""
+"""Functions of whole series that an expression has besides `FUNCTIONS`, by name, with their descriptions."""
 
 _NAMED = re.compile(r"\s*(?P<name>[^\W\d]\w*)\s*=(?!=)(?P<expression>.*)", re.DOTALL)
 _EVEN = re.compile(
@@ -51,9 +51,10 @@ class Definition:
 
     name: str
     expression: str
-    """Empty to remove the variable."""
+    """The expression that computes the variable; empty to remove the variable."""
     period_s: float | None = None
-    """Sampling period; None keeps the times of its source."""
+    """Sampling period of the variable in seconds; None if it has the times of the variable from which it is computed.
+    """
 
     def compute(self, log: Log, otherwise: str) -> list[Series]:
         """Return the series of the variable, one for each run that has the first variable of its expression.

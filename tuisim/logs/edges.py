@@ -23,13 +23,19 @@ from tuisim.logs.pieces import (
 from tuisim.logs.stillness import PART_OF_SLOPE, PlateauArray, read_spans
 
 EDGE_SAMPLES = 3
-"""Most samples of an edge between two plateaus, however short the passage."""
+"""A plateau of up to this number of samples may be a step on an edge, however few samples are between the levels on
+both sides.
+"""
 
 _MAX_STEP = 1 / 3
-"""Largest step of an edge as a fraction of the passage: one of two levels that it passes at equal times is no step."""
+"""A longer plateau may be a step on an edge if it has at most this fraction of the samples between the levels on both
+sides: two equally long plateaus there are levels.
+"""
 
 _MIN_LEVELS = 2 / 3
-"""Smallest fraction of long pieces in a plateau that may be levels with edges; a slope is cut into short pieces."""
+"""A plateau may consist of several levels only if more than this fraction of its samples is in pieces of at least
+`NEAR_SAMPLES`: a slope is cut into shorter pieces.
+"""
 
 
 def find_edges(plateaus: PlateauArray) -> BoolArray:

@@ -23,7 +23,9 @@ if TYPE_CHECKING:
 
 LOG_FORMAT = 1
 _MAX_WHOLE = 2.0**53
-"""Beyond it, floating-point numbers skip whole numbers."""
+"""Whole numbers in a column of floating-point numbers are exported as integers if all are smaller than this: larger
+ones may be rounded.
+"""
 
 _UNITS: Mapping[str, str] = {
     "index": "time since the first sample of the run was printed",
@@ -268,9 +270,11 @@ class Exporter(NamedTuple):
 
     write: Callable[[pd.DataFrame, Metadata, BinaryIO], None]
     contents: str
-    """What a file contains, for dialogs."""
+    """What a file in this format contains, in words for dialogs."""
     companion: bool = True
-    """Whether the metadata goes into a file of its own, NAME.csv.json."""
+    """Whether the metadata goes into a file beside the export, such as NAME.csv.json, because the format cannot store
+    it.
+    """
 
 
 def _write_csv(frame: pd.DataFrame, metadata: Metadata, handle: BinaryIO) -> None:

@@ -52,7 +52,7 @@ _OPERATORS: Mapping[type[ast.AST], Operator] = {
 }
 _QUOTED = re.compile("`([^`]*)`")
 _SINGLE_EQUAL = re.compile("(?<![<>=!:])=(?!=)")
-"""Another spelling of `==`."""
+"""Matches a single `=`, which an expression may have in place of `==`."""
 
 
 def _shift(values: FloatArray) -> FloatArray:
@@ -60,7 +60,7 @@ def _shift(values: FloatArray) -> FloatArray:
 
 
 Functions = Mapping[str, tuple[int, Callable[..., Any], str]]
-"""By name: number of arguments, function, description."""
+"""Functions for expressions, by name: the number of arguments, the function that computes values, and a description."""
 
 FUNCTIONS: Functions = {
     "abs": (1, np.abs, "absolute value"),
@@ -81,7 +81,7 @@ FUNCTIONS: Functions = {
     "shift": (1, _shift, "value of the previous row"),
     "diff": (1, lambda x: x - _shift(x), "change since the previous row"),
 }
-"""Functions of every expression."""
+"""The functions that every expression can use."""
 
 CONSTANTS: Mapping[str, float] = {"pi": np.pi}
 

@@ -18,17 +18,18 @@ from tuisim.logs.dates import is_date, is_moment
 from tuisim.logs.warnings import Notes
 
 SEPARATORS = (";", "\t", "|", ",")
-"""The comma, which may be a part of a number, comes last."""
+"""The separators of cells that a text can have besides blanks; the comma, which may be a part of a number, comes last.
+"""
 BLANKS = " "
-"""A separator of any number of blanks."""
+"""Stands for a separator that is any number of blanks."""
 SNIFFED_LINES = 400
 """Lines from the beginning of a text in which its table is looked for."""
 
 _COMMENT_SIGNS = ("#", "%", "//", ";")
 _EXCEL = re.compile(r"sep=(.)", re.IGNORECASE)
-"""The first line of a CSV file for Excel."""
+"""Matches the line `sep=;`, which may be the first one of a CSV file for Excel; the group is the separator."""
 _WORD = re.compile(r'(?<!\S)"[^"]*"(?!\S)|\S+')
-"""A cell between blanks."""
+"""Matches a cell of a row whose cells are separated by blanks; a cell in quotes may contain blanks."""
 _NUMBER = re.compile(
     rf"(?:{NUMBER}|[+-]?\d{{1,3}}(?:[.,' \xa0\u202f’]\d{{3}})+(?:[.,]\d+)?|[+-]?\d+,\d+(?:[eE][+-]?\d+)?)"
     r"\s*(?:%|°\w?|[A-Za-zµΩ]{1,3}(?:/[a-z]{1,3}²?)?)?"
@@ -38,9 +39,11 @@ _NUMBER = re.compile(
 is_rule = re.compile(r"[\s|+:=_-]*(?:--|==|__)[\s|+:=_-]*").fullmatch
 """Matches a line drawn of signs between the heading and the rows."""
 _MIN_PART = 10
-"""The table has at least one row for this many of the longest run of rows alike."""
+"""The table of a text is the first run of rows alike that has at least a tenth of the rows of the longest run."""
 _MAX_LINES, _MAX_JOINS = 100, 100
-"""Maximum lines of a quoted row, and maximum failed attempts to join lines."""
+"""Maximum number of lines of a row with a quoted cell, and maximum number of failed attempts in a text to join lines to
+such a row.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,22 +53,22 @@ class Heading:
     names: tuple[str, ...] = ()
     """Names of the columns; empty if there were only comments."""
     separator: str = ","
-    """One of `SEPARATORS`, or `BLANKS`."""
+    """The separator of cells, one of `SEPARATORS`, or `BLANKS`."""
     has_comments: bool = False
     """Whether lines that begin with `#` are skipped."""
     rows_follow: int = 1
-    """Line of the file where the table's first row may be."""
+    """Number of the line, from 1, from which on the table's rows follow."""
     kinds: str = ""
-    """For each column a letter as `parse_kinds` returns them."""
+    """A letter for the kind of each column's cells, such as `n` for numbers; see `parse_kinds`."""
     row: int = 0
-    """Line of the file with the names, 0 if there is none."""
+    """Number of the line that has the names of the columns, from 1; 0 if there is none."""
 
 
 class Row(NamedTuple):
     """A row of cells in a text."""
 
     line: int
-    """Line of the file, from 1."""
+    """Number of the row's first line in the file, from 1."""
     cells: list[str]
 
     @property

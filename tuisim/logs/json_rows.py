@@ -26,7 +26,7 @@ _NAMELESS = "(no name)"
 _format_value = json.JSONEncoder(default=repr, skipkeys=True).encode
 
 Row = Mapping[str, Any]
-"""Cells by the names of their columns."""
+"""The cells of a row, by the names of their columns."""
 
 
 class ObjectReader:

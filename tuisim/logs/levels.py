@@ -20,13 +20,13 @@ from tuisim.logs.plateaus import Search, find_plateaus
 from tuisim.logs.units import can_be_light, names_level
 
 NEAR_PERCENT = 2.0
-"""Largest distance in percent at which a level gets the name of a grey."""
+"""A level gets the name of the nearest grey if the two differ by at most this, where white is 100."""
 
 FULL = 255.0
 
 _PLAIN_NAMES = MappingProxyType({0: "black", 128: "grey", 255: "white", 211: "light grey", 220: "pale grey",
                                  169: "dark grey", 105: "dim grey", 192: "silver"})  # fmt: skip
-"""Common names by channel value; the others are those of CSS."""
+"""Common names of greys by their channel value, 0 to 255; all other greys have their names in CSS."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +35,7 @@ class Grey:
 
     name: str
     percent: float
-    """100 is white."""
+    """Lightness of the grey in percent: 0 is black, and 100 is white."""
 
 
 @cache
@@ -139,19 +139,21 @@ class Levels:
     """The plateaus of the samples of one variable, with their levels and greys."""
 
     start: IntArray
-    """Shape (n,): first sample of each."""
+    """Index of the first sample of each plateau, shape (n,)."""
     stop: IntArray
-    """Shape (n,): the sample after its last one."""
+    """Index of the last sample of each plateau plus 1, shape (n,)."""
     level: FloatArray
-    """Shape (n,): mean without strays."""
+    """Mean of the samples of each plateau without strays, shape (n,)."""
     true_level: FloatArray
-    """Shape (n,): the level, corrected for clamped noise near the ends of the scale."""
+    """The level of each plateau, corrected for clamped noise near the ends of the scale, shape (n,)."""
     spread: FloatArray
     strays: IntArray
     greys: tuple[str, ...]
-    """The name of the nearest grey of each; empty if there is none, or if the samples are not light levels."""
+    """The name of the grey nearest to the level of each plateau; empty if none is near, or if the samples are not light
+    levels.
+    """
     grey_percent: FloatArray
-    """Shape (n,): what the sensor reads of that grey; NaN without one."""
+    """The sensor's reading of the grey in `greys` for each plateau, in percent, shape (n,); NaN without a grey."""
 
 
 def measure_levels(

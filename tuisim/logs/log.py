@@ -38,13 +38,13 @@ class Member:
     """A variable of one run, with its rows in the table."""
 
     name: str
-    """The variable; with several runs followed by ` #` and the run's number."""
+    """The name of the variable; in a log of several runs, ` #` and the run's number follow."""
     variable: str
     """The variable without the run's number."""
     run: int
-    """Number in the run column, 0 if there is none."""
+    """Number of the run, from the run column; 0 in a log without that column."""
     rows: IntArray | None
-    """Its rows of the table, increasing; None for all."""
+    """Rows of the table that have the variable's samples, in ascending order; None for all rows."""
 
 
 def list_members(table: pa.Table, layout: Layout) -> list[Member]:
@@ -111,15 +111,15 @@ class Series:
     """The samples of one variable of one run, in the order of the table."""
 
     name: str
-    """As in `Log.names`."""
+    """The name of the series, one of `Log.names`."""
     time_s: FloatArray
-    """Shape (n,): times, or sample numbers from 0 without a time column."""
+    """Times of the samples in seconds, or numbers from 0 in a log without a time column, shape (n,)."""
     values: FloatArray
-    """Shape (n,); NaN for empty cells."""
+    """Values of the samples, shape (n,); NaN for empty cells."""
     rows: IntArray
-    """Shape (n,): row of each sample in the table, from 0, increasing."""
+    """Row of each sample in the table, from 0, in ascending order, shape (n,)."""
     run: int = 0
-    """Number in the run column, 0 if there is none."""
+    """Number of the run, from the run column; 0 in a log without that column."""
 
     def sample(self, moments_s: FloatArray, between: Between = Between.HOLD) -> FloatArray:
         """Return its values at given times, shape (m,); see `signals.sample_signal`."""
@@ -136,9 +136,11 @@ class LogCache:
     numbers: dict[str, FloatArray] = field(default_factory=dict)
     times_s: FloatArray | None = None
     rows: IntArray | None = None
-    """The rows of a series to which all rows belong."""
+    """The rows from 0 to n - 1, for all series that have every row of the table; None until a series needs them."""
     specs: dict[int, RunSpec | None] = field(default_factory=dict)
-    """By index of the run; complete from the start if the log was built from stored runs."""
+    """Specification of each run that was asked for, by the run's index; those of stored runs are all there from the
+    start.
+    """
 
 
 def _has_rows(member: Member) -> bool:
@@ -155,13 +157,13 @@ class Log:
     notes: tuple[str, ...] = ()
     """Warnings about skipped or guessed data, one sentence each."""
     left_out: int = 0
-    """Rows or cells that could not be read."""
+    """Number of rows or cells that could not be read."""
     metadata: Mapping[str, Any] = field(default_factory=dict)
     """Metadata of the runs, if the file was exported by tuisim."""
     form: ReadChoices = NO_CHOICES
-    """How a text was read: what was chosen, else what was found."""
+    """How a text was read: the choices of the user, completed by what was found in the text."""
     first_lines: Sequence[tuple[int, str]] = ()
-    """The first lines of a text that are not blank, each with its number."""
+    """The first lines of a text that are not blank, each with its number in the file; empty if the log is no text."""
     derived: Mapping[str, Series] = field(default_factory=dict)
     _cache: LogCache = field(default_factory=LogCache, repr=False, compare=False)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 _MAX_EXPONENT = 400
-"""Of numbers between this power of two and its inverse, the sums of squares neither overflow nor vanish."""
+"""Sums of the squares of numbers neither overflow nor vanish if the numbers are between 2**-400 and 2**400."""
 
 
 def find_scale(low: float, high: float) -> float:

@@ -27,7 +27,7 @@ POSE = ("x_mm", "y_mm", "heading_deg")
 FRAME_ID = "mat"
 """Coordinate frame of the poses: x to the right, y up on the mat, z towards the viewer."""
 _TOLD_EVERY = 10_000
-"""Messages between two updates of the progress."""
+"""Number of messages that are written between two reports of the progress."""
 
 
 def _build_object(title: str, **properties: Any) -> dict[str, Any]:
@@ -53,7 +53,7 @@ class _Channel(NamedTuple):
     schema_name: str
     schema: dict[str, Any]
     times_ns: list[int]
-    """Times of the messages, not falling."""
+    """Times of the messages in ns, in ascending order; several may be equal."""
     messages: Iterator[dict[str, Any]]
 
 

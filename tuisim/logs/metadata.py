@@ -10,7 +10,7 @@ from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.core.tree import load_run
 
 SCALES = "scales"
-"""Key of the changes of what a program counts as a degree of a motor, in the metadata of a run."""
+"""Key in the metadata of a run: its value lists when the program changed what it counts as a degree of a motor."""
 
 
 def read_spec(metadata: Mapping[str, Any], run: int = 0) -> RunSpec | None:

@@ -17,13 +17,17 @@ from numpy.typing import NDArray
 from tuisim.engine.runs.arrays import FloatArray, IntArray
 
 MIN_SAMPLES = 2
-"""Fewest samples of a plateau; one more with noise, one at the ends of the log."""
+"""Fewest samples of a plateau in a log without noise. With noise, a plateau needs one more; at an end of the log, one
+sample is enough.
+"""
 
 STRAY_SAMPLES = 2
-"""Most samples in a row that count as strays."""
+"""Largest number of samples in a row that can be strays: more are a level of their own."""
 
 FAR = 5.0
-"""A sample farther off than this number of standard deviations is a stray: noise makes 6 in 10 million."""
+"""A sample is a stray if it is farther from the others of its piece than this number of standard deviations: of noise,
+6 samples in 10 million are.
+"""
 
 NEAR_SAMPLES = 12
 """Samples on each side of a cut from which a drift is estimated.
@@ -33,13 +37,16 @@ is certain. Fewer would leave the slope unknown: the deviation is 1.3 times the 
 """
 
 CERTAINTY = 4.0
-"""Smallest step in standard deviations: noise makes a larger one at 6 of 100,000 seams."""
+"""Smallest step between two pieces, in standard deviations of a step: noise makes a larger one at 6 of 100,000 places.
+"""
 
 _MAX_SAMPLES_TOGETHER = 100_000
-"""Most samples of pieces that are looked at together, but for a longer piece: they fit in the caches of a processor."""
+"""Largest number of samples in an array of pieces, except for a single longer piece: so many fit in the caches of a
+processor.
+"""
 
 Pieces = IntArray
-"""Spans of a log in order, shape (n, 2): their starts, and their stops."""
+"""Spans of a log in order, shape (n, 2): the index of the first sample of each, and that of its last sample plus 1."""
 
 BoolArray = NDArray[np.bool_]
 
@@ -48,17 +55,17 @@ class Signal(NamedTuple):
     """The finite samples of a log, with the sizes that the search for plateaus needs, such as the noise."""
 
     values: FloatArray
-    """Shape (n,)."""
+    """The samples, all finite, shape (n,)."""
     range: float
-    """From the lowest level to the highest."""
+    """Difference between the highest level and the lowest."""
     noise: float
-    """Standard deviation of the noise about slopes."""
+    """Standard deviation of the noise, measured so that a slope of the log does not add to it."""
     sigma: float
-    """Standard deviation of all noise, by which strays are found."""
+    """Standard deviation of the noise, to which a slope of the log adds; strays and steps are found by it."""
     min_step: float
-    """The smallest step between levels."""
+    """Smallest difference between two neighbouring levels, whatever the noise."""
     drifts: bool = True
-    """Whether a slope may explain a step between pieces."""
+    """Whether two pieces are joined if both lie on one line with a slope."""
 
 
 def count_samples(pieces: Pieces) -> IntArray:
@@ -173,13 +180,14 @@ class _Lines(NamedTuple):
 
     samples: FloatArray
     place: FloatArray
-    """Mean position."""
+    """Mean position of the samples of each piece."""
     level: FloatArray
-    """Mean value."""
+    """Mean value of the samples of each piece."""
     width: FloatArray
-    """Sum of the squared distances from the mean position."""
+    """For each piece, the sum of the squared distances of its samples from their mean position."""
     rise: FloatArray
-    """Sum of the products of the distances from both means."""
+    """For each piece, the sum over its samples of the distance from the mean position times that from the mean value.
+    """
 
 
 def _fit_lines(signal: Signal, pieces: Pieces) -> _Lines:

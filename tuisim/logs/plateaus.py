@@ -65,10 +65,13 @@ The time of the search grows with the square of the positions where nothing can 
 """
 
 _FEW_STEPS = 0.2
-"""Largest fraction of the differences between neighbours that are steps, in a common log."""
+"""Most levels of a log are short if more than this fraction of the differences between neighbouring samples are steps.
+"""
 
 _FEW_STARTS = 12
-"""Up to this number of starts of a piece, Python's own floats are faster than arrays."""
+"""Up to this number of possible starts of a piece, the search computes with Python's floats, which are then faster than
+arrays.
+"""
 
 _GIANT = 1000.0
 """Samples are clipped at this multiple of the range from their median.
@@ -78,19 +81,25 @@ noise: a float of 16 digits still has four for the others.
 """
 
 _STEP_OF_RANGE = 0.005
-"""Smallest step, as a fraction of the range, whatever the noise: half of a step of 1 in readings from 0 to 100."""
+"""Smallest step between two levels as a fraction of the range, whatever the noise: half of a step of 1 in readings from
+0 to 100.
+"""
 
 _COARSE = 0.05
-"""Largest step of the scale of readings, as a fraction of the range: 1 in readings from 0 to 20."""
+"""Jumps of noisy readings by one step of their scale are noise if the step is below this fraction of the range: 1 in
+readings from 0 to 20.
+"""
 
 _MIN_RUNS = 24
-"""Fewest runs of equal samples from which it is known how long a sensor repeats a measurement."""
+"""Fewest runs of equal samples from which it is estimated for how many samples a sensor repeats a measurement."""
 
 _DUST = 1e-9
-"""Differences below this fraction of the values are rounding errors."""
+"""Differences between samples below this fraction of the largest one are rounding errors."""
 
 _BLOCK = 400_000
-"""Samples that are cut at a time in a long log; a level that goes on in the next block is joined again."""
+"""Number of samples in each block of a long log that is cut into pieces by itself; a level that goes on in the next
+block is joined again.
+"""
 
 
 Search = Callable[[FloatArray], PlateauArray]

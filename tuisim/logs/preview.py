@@ -11,11 +11,11 @@ from tuisim.logs.log import Log
 from tuisim.logs.reader import read_beginning
 
 _MAX_LINE = 60
-"""Maximum number of characters of a line of the file."""
+"""Maximum number of characters that a selection of the dialog shows of a line of the file."""
 _EXAMPLES = {".": "1.5", ",": "1,5"}
 """Numbers that are shown in place of decimal signs, which are hard to see."""
 Offers = list[tuple[str, Any]]
-"""Ways to read a file: pairs of a label and a value in `ReadChoices`."""
+"""What the dialog offers for one field of `ReadChoices`: pairs of a label and the value of the field."""
 
 
 class Preview:
@@ -27,7 +27,7 @@ class Preview:
     """
 
     MAX_CELL = 24
-    """Maximum number of characters of a cell."""
+    """Maximum number of characters that the dialog shows of a cell or of a column's name."""
 
     def __init__(self, path: str, log: Log) -> None:
         self._path = path

@@ -34,17 +34,19 @@ _PREFIX = re.compile(
     rf"\s*(?:>+|[^\W\d]\w*\((?=\w+=)|\[[^\]=]*\]:?|{_LEVEL}(?=[\s:])\s*:?|-(?=\s)|[\w.]+\s*:(?=\s*[^\W\d][\w.]*\s*[:=])"
     r"|[\w.]+\s+-(?=\s)|[\w.\-]+ [^\s:\[]+\[\d+\]:)\s*"
 )
-"""A prompt, the type of a printed object, brackets, a level of `logging`, a logger's name, or what syslog writes."""
+"""Matches what may stand before samples in a line: a prompt, the type of a printed object, brackets, a level of
+`logging`, a logger's name, or what syslog writes.
+"""
 _VALUE = rf"(?:{NUMBER}|(?i:[+-]?(?:nan|inf(?:inity)?)|none|null|na)\b)"
-"""A number, or what is printed where there is none."""
+"""Regular expression of a number, or of a word for a missing one, such as `nan` or `None`."""
 _ITEM = re.compile(
     rf"((?!{_LEVEL}\s)[^\W\d][\w.\-/]*(?: [^\W\d][\w.\-/]*){{0,2}}?)\s*[:=]\s*({_VALUE})"
     rf"(?:\s*(?i:{UNIT})(?![\w.\-/%°]|\s*[:=]))?"
 )
-"""A name with its number, of which a unit may follow."""
+"""Matches a sample, which is a name with its number, and the unit that may follow."""
 _ITEMS = re.compile(rf"(?:(?>{_ITEM.pattern})(?:[\s,;|)]+|$))+")
 _TELEPLOT = re.compile(rf">?([^\W\d]\w*):(\d{{9,}}(?:\.\d+)?):({NUMBER})(?:[|\xa7].*)?")
-"""Name, milliseconds and value."""
+"""Matches a line in the format of Teleplot: a name, a time in milliseconds, and a value."""
 _VALUES = re.compile(rf"{_VALUE}(?:(?:\s*[,;]\s*|\s+){_VALUE})*")
 _SEPARATORS = frozenset(SEPARATORS)
 _SEPARATOR = re.compile(r"\s*[,;]\s*|\s+")
@@ -57,17 +59,19 @@ _MAX_CHARACTERS = 4000
 """Longer lines are not searched for samples."""
 
 Values = Sequence[tuple[str, float | str]]
-"""Names with their numbers, which may be texts."""
+"""Samples of a line: pairs of a name and a number, which may be still a text."""
 
 
 class ProgramLine(NamedTuple):
     """A line that a program printed: its time, and its samples or numbers."""
 
     time: float | str | None
-    """Seconds behind a sample, or the time at the beginning of the line; None without a time."""
+    """The time in seconds if the line gives it with its samples, or the text of the time at the line's beginning; None
+    without a time.
+    """
     samples: Values = ()
     rest: str = ""
-    """Numbers without names; empty if there are samples."""
+    """The part of the line with numbers that have no names; empty if there are samples."""
 
 
 def parse_line(line: str) -> ProgramLine | None:
