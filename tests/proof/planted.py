@@ -136,8 +136,8 @@ PLANTED: tuple[Planted, ...] = (
     Planted(
         "run.json is taken from the run folder, not from what was started",
         "engine/runs/store.py",
-        '{**run.data, "tags": _read_tags(run.folder), "end"',
-        '{**read_run_file(run.folder), "tags": _read_tags(run.folder), "end"',
+        '{**run.data, "tags": _read_tags(folder), "end"',
+        '{**read_run_file(run.folder), "tags": _read_tags(folder), "end"',
         "enemies",
         ("notebook:forged:0",),
         "is not what was started",
