@@ -22,7 +22,7 @@ _PARTS = re.compile(
     r"\A\+\+\+\n(?P<head>.*?)\n\+\+\+\n\n# (?P<title>[^\n]+)\n(?P<text>.*)\Z", re.DOTALL
 )
 LINK = re.compile(r"\[([^\[\]]+)\]\(([\w-]+)\.md\)")
-"""In Markdown, a link to another page: its text, and the name of the page."""
+"""Matches a link to another page in Markdown; the groups are the link's text and the page's name."""
 
 
 class GuidePart(StrEnum):
@@ -80,7 +80,7 @@ CONTENTS: Mapping[GuidePart, tuple[str, ...]] = {
     ),
     GuidePart.PROJECT: ("contributing", "architecture", "security", "licences"),
 }
-"""The names of all pages, by part."""
+"""The names of all pages of the guide in their order, by part."""
 
 
 @dataclass(frozen=True, slots=True)

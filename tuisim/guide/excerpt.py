@@ -27,7 +27,7 @@ _PREFIX_LETTERS = 4
 _SCRIPT_COLUMNS = ("group", "id")
 """Columns of the table of keys that an excerpt leaves out, as they tell the reader of one row nothing."""
 _CACHED_TEXTS = 256
-"""The most texts whose lines are stored, enough for several questions."""
+"""Largest number of texts whose drawn lines are cached, enough for the answers to several questions."""
 _MIN_LINES = 3
 """Fewest lines that the text of an excerpt gets, and fewest lines of code among which the best one is looked for."""
 

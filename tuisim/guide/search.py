@@ -55,7 +55,7 @@ _ITEM = re.compile(r"- |\| |\d+\. ")
 SET_IN = "    "
 """The beginning of each line of indented text, such as code."""
 _RULE = re.compile(r"[-| ]+")
-"""Matches the line below the head of a table."""
+"""Matches the line of dashes below the head of a table in Markdown."""
 _NO_ANSWER = re.compile(r"# .*|")
 """Matches the title of a page, or an empty text: neither is a passage."""
 _MIN_PREFIX_LETTERS = 3
@@ -73,13 +73,15 @@ _PASSAGE_WEIGHT = 1.0
 _HEADINGS_WEIGHT = 0.6
 _PAGE_WORDS_WEIGHT = 1.0
 _WHOLE_PAGE_WEIGHT = 0.6
-"""The weights of four similarities with a question: of the passage's words, of its headings, of the further words of
-its page, and of the share of the question's words that are anywhere on its page.
+"""`_PASSAGE_WEIGHT`, `_HEADINGS_WEIGHT`, `_PAGE_WORDS_WEIGHT` and `_WHOLE_PAGE_WEIGHT` say how much these count for a
+question: the words of a passage, those of its headings, the further words of its page, and the share of the question's
+words that are anywhere on its page.
 """
 _ALL_QUESTIONS_WEIGHT = 1.0
 _NEAREST_QUESTION_WEIGHT = 0.5
 _SAME_QUESTION_WEIGHT = 1.5
-"""How much the questions count that people ask: all together, the one most alike, and its cube: the same question.
+"""`_ALL_QUESTIONS_WEIGHT`, `_NEAREST_QUESTION_WEIGHT` and `_SAME_QUESTION_WEIGHT` say how much a passage's questions in
+`questions.toml` count: all together, the one most alike, and its similarity cubed, which is high for the same question.
 
 The method is the vector space model: stems are weighted by their inverse document frequency, texts are compared by
 the cosine, and the weighted cosines of the fields are added. The weights are set by hand. Of 400 questions, drawn at
@@ -116,9 +118,9 @@ class SearchResult:
     heading: str
     """The heading of the section that has the passage; empty for the beginning of the page."""
     passage: str
-    """In Markdown: a paragraph, an item of a list or a row of a table."""
+    """The passage in Markdown: a paragraph, an item of a list or a row of a table."""
     head: str = ""
-    """In Markdown, the head of the table of which the passage is a row; empty for no row."""
+    """The head, in Markdown, of the table of which the passage is a row; empty if the passage is no row."""
     below: tuple[str, ...] = ()
     """The passages that this one introduces: items of a list, or rows of a table."""
 

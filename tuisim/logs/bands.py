@@ -54,11 +54,11 @@ class Band:
     grey_percent: float
     """The sensor's reading of the grey in `grey`, in percent; NaN if `grey` is empty."""
     true_level: float
-    """The level, corrected for clamped noise near the ends of the scale."""
+    """The level of the band, corrected for noise that the ends of the scale have clamped."""
     start_mm: float
-    """Distance driven at the first sample; NaN if the log has no positions."""
+    """Distance that the robot had driven at the band's first sample; NaN if the log has no positions."""
     stop_mm: float
-    """Distance driven at the last sample."""
+    """Distance that the robot had driven at the band's last sample; NaN if the log has no positions."""
     width_mm: float
     """Distance driven from the edge before the band to the edge after it, where readings are halfway between two
     levels; NaN if unknown.
@@ -97,7 +97,7 @@ class BandReport:
     variable: str
     bands: tuple[Band, ...]
     total: int
-    """The number of samples of the variable."""
+    """The number of all samples of the variable, those between the bands included."""
 
     @cached_property
     def has_true_levels(self) -> bool:

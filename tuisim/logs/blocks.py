@@ -49,9 +49,9 @@ class Block:
     """Consecutive whole lines of a text file."""
 
     first_row: int
-    """Row of the first line in the file, from 1."""
+    """Number, from 1, of the block's first line in the file."""
     text: str
-    """Each line with its newline."""
+    """The lines of the block, each with its newline."""
 
     def lines(self) -> Iterator[tuple[int, str]]:
         """Yield each line that is not blank, with its row in the file."""
@@ -78,7 +78,9 @@ class LineCutter:
         self._row = 1
         self._newlines = io.IncrementalNewlineDecoder(None, translate=True)
         self._is_known = encoding != ""
-        """Whether the encoding was chosen, so that bytes which do not fit are replaced."""
+        """Whether the encoding is chosen or guessed already, so that bytes which do not fit are replaced, and nothing
+        is guessed any more.
+        """
         encoding = encoding or _UTF_8
         try:
             # This raises for Python's codecs that are not for text, such as hex and rot13.
@@ -206,7 +208,7 @@ _UNPACKED_BYTES = 1 << 12
 _CUT_OFF = "the compressed file is truncated or damaged: only the readable part was read"
 
 _CODECS = {b"\x1f\x8b": "gzip", b"BZh": "bz2", b"\x28\xb5\x2f\xfd": "zstd"}
-"""Arrow's names of the compressed formats, by their first bytes."""
+"""Arrow's names of the compressed formats that can be read, by the first bytes of a file."""
 _REFUSED = {
     b"PK\x03\x04": "a ZIP archive or a spreadsheet",
     b"7z\xbc\xaf\x27\x1c": "a 7-Zip archive",

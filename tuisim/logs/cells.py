@@ -62,9 +62,9 @@ class _NumberForm:
     """The form of a column's numbers, such as their decimal sign."""
 
     pattern: str = rf"^{NUMBER}$|{_SPECIAL}"
-    """Regular expression of a number."""
+    """Regular expression of a cell that is a number in this form."""
     changes: tuple[tuple[str, str], ...] = ()
-    """Replacements that give Python's form of the number: regular expressions and texts."""
+    """Pairs of a regular expression and its replacement, which bring a number from this form to Python's."""
     words: str = ""
     """The form in words, such as that the numbers have a unit; empty for Python's own form."""
     decimal: str = ""

@@ -9,7 +9,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError, among
 
 SIGNS = {"comma": ",", "semicolon": ";", "tab": "\t", "bar": "|", "blank": " "}
-"""Separators by name; a blank is any number of blanks."""
+"""Separators of cells by the names that the user can choose; a blank stands for any number of blanks."""
 NAMES_OF_SIGNS = {sign: name for name, sign in SIGNS.items()}
 WORDS = {
     "unit": ("s", "ms", "us", "ns", "min"),
@@ -28,7 +28,7 @@ class ReadChoices:
     """
 
     time: str | None = None
-    """Column with the time; empty to count the rows; None to find it."""
+    """Name of the column with the time; empty to count the rows instead, None to find it."""
     unit: str = ""
     """Unit of numeric times, one of `WORDS["unit"]`; empty to find it."""
     value: tuple[str, ...] = ()

@@ -40,7 +40,7 @@ _UNIT_WORDS_S = {
 UNITS_S = {word: seconds for seconds, words in _UNIT_WORDS_S.items() for word in words}
 
 COUNTS = ("index", "row")
-"""Names of columns that count the samples."""
+"""Names by which a column is recognised as one that counts the samples."""
 NAMES = (
     *(
         "time",
@@ -86,7 +86,7 @@ _LONGEST_UNIT = 200
 square.
 """
 _SINCE_1970_S = (6.3e8, 4.2e9)
-"""Seconds since 1970 of the years 1990 to 2103: times of this size are dates."""
+"""Seconds from 1970 to the years 1990 and 2103: a number between the two is taken for a date."""
 UNIT_NAMES = {seconds: words[-1] for seconds, words in _UNIT_WORDS_S.items()}
 """Names of the units of time, in the plural, by their length in seconds."""
 
@@ -154,7 +154,9 @@ class Times(NamedTuple):
     seconds: FloatArray
     """The time of each row in seconds, shape (n,); NaN where a row has no time."""
     wraps: IntArray = NO_ROWS
-    """Rows, from 0, in which a clock or a counter began again at 0; from there on its period is added."""
+    """Rows, from 0, in which a clock or a counter began again at 0; from each of them on, one more period is added to
+    the times.
+    """
     period: str = ""
     """The period of the clock or counter in words; empty if it never began again."""
 
@@ -266,7 +268,7 @@ class Layout:
     unit_s: float = 1.0
     """Unit of the time column in seconds."""
     since_first: bool = False
-    """Whether the time column has numbers that are dates, shown as the time since the first one."""
+    """Whether the numbers of the time column are dates, of which the time since the first one is shown."""
     variable: str = ""
     """Name of the column that says which variable the value in a row is of; empty if each column of values is a
     variable.
@@ -274,7 +276,7 @@ class Layout:
     values: tuple[str, ...] = ()
     """Names of the columns with values; only one if there is a `variable` column."""
     run: str = ""
-    """Column with the number of the run; empty if there is only one run."""
+    """Name of the column with the number of each row's run; empty if the table has only one run."""
     sure: bool = True
     """Whether the names of the columns leave no doubt about this layout; otherwise the user should be asked."""
 

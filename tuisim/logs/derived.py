@@ -30,7 +30,7 @@ from tuisim.logs.signals import (
 from tuisim.logs.units import drop_run, parse_unit
 
 TIME = "time"
-"""Name of the sample times in an expression."""
+"""Name by which an expression refers to the times of the samples."""
 SIGNALS = {
     "slope": "derivative, per second",
     "integral": "integral over time",

@@ -238,7 +238,7 @@ def build_table_metadata(table: str, columns: Iterable[str]) -> dict[str, Any]:
 
 
 Metadata = Mapping[str, Any]
-"""The metadata of a log, ready for JSON."""
+"""The metadata of a log by key, of values that JSON can store."""
 
 
 def describe_files(target: Path) -> str:
@@ -323,6 +323,8 @@ EXPORTERS: Mapping[str, Exporter] = {
     ".jsonl": Exporter(_write_jsonl, _TYPED),
     ".arrow": Exporter(_write_arrow, _TYPED, companion=False),
 }
-"""The formats by suffix. To add one: write its function and a line here, and its reader in `logs.reader`."""
+"""The formats of exports by the suffix of the file. A new one needs its function, a line here, and its reader in
+`logs.reader`.
+"""
 
 LISTED = f"{', '.join([*EXPORTERS][:-1])} or {[*EXPORTERS][-1]}"

@@ -23,7 +23,7 @@ SEPARATORS = (";", "\t", "|", ",")
 BLANKS = " "
 """Stands for a separator that is any number of blanks."""
 SNIFFED_LINES = 400
-"""Lines from the beginning of a text in which its table is looked for."""
+"""Number of lines at the beginning of a text in which the heading of its table is looked for."""
 
 _COMMENT_SIGNS = ("#", "%", "//", ";")
 _EXCEL = re.compile(r"sep=(.)", re.IGNORECASE)
@@ -51,7 +51,7 @@ class Heading:
     """The beginning of a table in a text: its first row, the names of its columns, and its separator."""
 
     names: tuple[str, ...] = ()
-    """Names of the columns; empty if there were only comments."""
+    """Names of the table's columns; empty if all lines were comments."""
     separator: str = ","
     """The separator of cells, one of `SEPARATORS`, or `BLANKS`."""
     has_comments: bool = False

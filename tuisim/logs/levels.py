@@ -108,11 +108,11 @@ class Light(NamedTuple):
     """How a colour sensor reads the mat: its noise, and its readings of black and white."""
 
     noise: int = 0
-    """Light noise of the run, 0 to 128."""
+    """The light noise that was set for the run, 0 to 128; 0 is none."""
     black: float = 0.0
-    """The sensor's reading of black, in percent."""
+    """What the colour sensor reads on black, in percent."""
     white: float = 100.0
-    """The sensor's reading of white, in percent."""
+    """What the colour sensor reads on white, in percent."""
 
     def undo_response(self, percents: FloatArray) -> FloatArray:
         """Return the greys of the mat, 0 to 100 %, for which the sensor gives these readings, 0 to 100."""

@@ -40,7 +40,7 @@ class Member:
     name: str
     """The name of the variable; in a log of several runs, ` #` and the run's number follow."""
     variable: str
-    """The variable without the run's number."""
+    """The name of the variable without the run's number."""
     run: int
     """Number of the run, from the run column; 0 in a log without that column."""
     rows: IntArray | None
@@ -159,7 +159,7 @@ class Log:
     left_out: int = 0
     """Number of rows or cells that could not be read."""
     metadata: Mapping[str, Any] = field(default_factory=dict)
-    """Metadata of the runs, if the file was exported by tuisim."""
+    """The metadata that tuisim stored when it exported the log; empty for any other file."""
     form: ReadChoices = NO_CHOICES
     """How a text was read: the choices of the user, completed by what was found in the text."""
     first_lines: Sequence[tuple[int, str]] = ()

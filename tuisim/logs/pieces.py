@@ -30,7 +30,7 @@ FAR = 5.0
 """
 
 NEAR_SAMPLES = 12
-"""Samples on each side of a cut from which a drift is estimated.
+"""Largest number of samples on each side of a cut from which the slope of a drift is estimated.
 
 With so many on both sides, the standard deviation of a step is 0.82 times the noise, so that one of 3.3 times the noise
 is certain. Fewer would leave the slope unknown: the deviation is 1.3 times the noise with five.

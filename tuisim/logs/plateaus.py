@@ -59,7 +59,7 @@ from tuisim.logs.stillness import (
 )
 
 MAX_SAMPLES_CUT_ANYWHERE = 4000
-"""Most samples for which every position may be a cut; in longer logs, only those where neighbouring means differ.
+"""Largest number of samples of a log that may be cut at every position; a longer one is cut only where means differ.
 
 The time of the search grows with the square of the positions where nothing can be pruned: in a log without steps.
 """
@@ -74,7 +74,7 @@ arrays.
 """
 
 _GIANT = 1000.0
-"""Samples are clipped at this multiple of the range from their median.
+"""Samples farther from their median than this multiple of their range are moved to that distance.
 
 The noise counts as at least 1/800 of the range, so the square of a clipped sample is at most 6.4e11 times that of the
 noise: a float of 16 digits still has four for the others.

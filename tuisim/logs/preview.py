@@ -13,7 +13,7 @@ from tuisim.logs.reader import read_beginning
 _MAX_LINE = 60
 """Maximum number of characters that a selection of the dialog shows of a line of the file."""
 _EXAMPLES = {".": "1.5", ",": "1,5"}
-"""Numbers that are shown in place of decimal signs, which are hard to see."""
+"""An example of a number for each decimal sign: the dialog shows it, because a sign alone is hard to see."""
 Offers = list[tuple[str, Any]]
 """What the dialog offers for one field of `ReadChoices`: pairs of a label and the value of the field."""
 
@@ -32,9 +32,9 @@ class Preview:
     def __init__(self, path: str, log: Log) -> None:
         self._path = path
         self.log = log
-        """The rows as they are read now."""
+        """The first rows of the file, as they are read with the present choices."""
         self.lines = log.first_lines
-        """The first lines of a text, each with its number."""
+        """The first lines of a text, each with its number in the file; empty if the file is no text."""
 
     def read(self, choices: ReadChoices) -> None:
         """Read the rows again with other choices.

@@ -56,7 +56,7 @@ _TUPLE = re.compile(
 )
 _TIME_NAMES = frozenset(NAMES) - {*COUNTS}
 _MAX_CHARACTERS = 4000
-"""Longer lines are not searched for samples."""
+"""Largest number of characters of a line that is searched for samples; longer lines have none."""
 
 Values = Sequence[tuple[str, float | str]]
 """Samples of a line: pairs of a name and a number, which may be still a text."""

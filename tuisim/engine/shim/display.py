@@ -20,13 +20,15 @@ if TYPE_CHECKING:
     from PIL.Image import Image as Picture
 
 BITS_A_PIXEL = 32
-"""Bits per pixel, as the driver reports them; the display itself is black and white."""
+"""Bits of a pixel in the memory of the screen, as the kernel's driver reports them; the display itself is black and
+white.
+"""
 LINE_BYTES = DISPLAY_WIDTH * BITS_A_PIXEL // 8
 WHITE = 255
 DARK_BELOW = 128
 """A pixel whose grey, 0 to 255, is below this is black on the display; all others are white."""
 TRUE_COLOR = 2
-"""The kernel's visual type for red, green and blue pixels."""
+"""The kernel's number for screens whose pixels have red, green and blue, `FB_VISUAL_TRUECOLOR`."""
 NO_FILE = -1
 """The file descriptor that makes `mmap` create memory which belongs to no file."""
 DISPLAY_PATH = "/dev/fb0"

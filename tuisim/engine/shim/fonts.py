@@ -47,7 +47,9 @@ _CELLS: Mapping[str, Mapping[int, int]] = {
     "tech": {14: 8},
     "term": {14: 8},
 }
-"""Width of every character in pixels, by family and size; the other families are proportional."""
+"""Width in pixels of every character of the monospaced families, by family and size; the families that are not named
+are proportional.
+"""
 _CELL = 0.6
 """Width of every character of a monospaced font whose size is not in `_CELLS`, as a fraction of the size."""
 

@@ -50,7 +50,7 @@ KINDS = {
     "medium": MotorKind("lego-ev3-m-motor", int(MEDIUM_MAX_SPEED_DPS), 160_000),
     **{kind: MotorKind(f"spike-{kind}", 1000, 0) for kind in HUB_MOTORS},
 }
-"""The driver's constants for all kinds of motors, by `MotorSpec.kind`."""
+"""The constants of the motor driver for each kind of motor, by `MotorSpec.kind`."""
 
 
 class Tacho(ABC):

@@ -65,7 +65,7 @@ class Plugs:
         self._built = built
         self._session = built.session
         self.missing: type[Exception] = Exception
-        """The library's error for a device that is not connected."""
+        """The class of error that the program's library raises for a device that is not connected."""
         self._late: frozenset[str] = frozenset()
         """Ports of the motors that a program named as its wheels only after a wheel had turned; they cannot become
         wheels any more.

@@ -403,4 +403,6 @@ DEVICES: Mapping[type, Callable[[DeviceSession, Any, Sequence[LegoSensor]], Lego
     TouchSpec: lambda session, spec, _others: touch_sensor(session, spec),
     InfraredSpec: lambda session, spec, _others: infrared_sensor(session, spec),
 }
-"""Factories of sensor devices, by class of spec: they take the session, the spec and the sensors made before."""
+"""Functions that make a sensor's driver, by the class of the sensor's spec; they take the session, the spec and the
+drivers made before.
+"""

@@ -18,7 +18,7 @@ class DeviceSession(Protocol):
 
     sim: Simulation
     now: int
-    """Simulated ns since the start."""
+    """Simulated time in ns since the run's start."""
     free: int
     """Above 0 while calls take no simulated time, such as the library's own look-ups, and constructors."""
 
@@ -26,10 +26,14 @@ class DeviceSession(Protocol):
     """Functions that read the registers of the left and the right wheel's motor; set when the brick is built."""
 
     held_up: str
-    """What the program waits for in vain, for the summary if a limit ends the run; empty for nothing."""
+    """What the program waits for in vain, in words for the summary of a run that the time limit ends; empty if nothing
+    keeps the program waiting.
+    """
 
     shown_ports: tuple[str, ...] | None
-    """The value of `Program.shown_ports`; None also before the program begins."""
+    """The ports of the parts that the program's text shows, from `Program.shown_ports`; None if parts are not plugged
+    in, and before the program begins.
+    """
 
     pressed: frozenset[str]
     """The names of the buttons that the user presses now, on the brick and on its remote controls."""

@@ -81,7 +81,7 @@ class Brick:
     led_levels: Mapping[str, int] = field(default_factory=dict)
     """Brightness of the LEDs of a hub, 0 to 255, by their names in `BrickState.leds`; empty until one was lit."""
     in_task: bool = False
-    """Whether the program runs a task of version 4, in which nothing blocks."""
+    """Whether a task of the program runs (Pybricks 4), so that calls return an object to await in place of blocking."""
 
     def find_motor(self, port: str) -> ServoMotor | None:
         """Return the motor on a port such as `outA`, which is plugged in if missing; None if there can be none."""

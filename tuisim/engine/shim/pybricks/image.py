@@ -25,15 +25,16 @@ PAINTS: Mapping[str, Rgb] = {
     name: load_css_colors()[name.lower()]
     for name in (*Color.__members__, "CYAN", "GRAY", "MAGENTA", "VIOLET")
 }
-"""Red, green and blue of each colour, by its name; the screen shows dark greys as black. Other colours draw nothing."""
+"""Red, green and blue of each colour that has a name in any version of Pybricks; the screen shows dark greys as black.
+"""
 BLACK = PAINTS["BLACK"]
 WHITE = PAINTS["WHITE"]
 MODE = "RGB"
 THE_SCREEN = "_screen_"
-"""The source of an image that is the screen itself."""
+"""The argument for which `Image` is the screen itself, in place of the path of an image file."""
 EXTENSION = ".png"
 MOST_PIXELS = 4_000_000
-"""Most pixels of an image: larger images do not fit into the memory of the brick."""
+"""Largest number of pixels of an empty image; a larger one is an error, as it does not fit into the brick's memory."""
 
 
 def paint_of(color: Any) -> Rgb | None:

@@ -16,9 +16,9 @@ class Ev3devSensor(Sensor):
         super().__init__(port)
         _, _, number = self.brick.plugs.find_path(port.device_port).rpartition("/sensor")
         self.sensor_index = int(number)
-        """The number of the sensor's device."""
+        """The number in the name of the sensor's folder in `/sys/class/lego-sensor`, such as 0 for `sensor0`."""
         self.port_index = INPUT_PORTS.index(port.device_port)
-        """The number of the port's device."""
+        """The index of the port among the brick's inputs: 0 for input 1."""
 
     def read(self, mode: str) -> tuple[int, ...]:
         """Return the values of a measurement in a mode such as `COL-REFLECT`. A change of mode takes time.

@@ -10,7 +10,8 @@ from collections.abc import Iterator, Mapping
 _SOUNDS = "/usr/share/sounds/ev3dev"
 _IMAGES = "/usr/share/images/ev3dev/mono"
 _HYPHENS = {"T_REX_ROAR": "t-rex_roar", "OKEY_DOKEY": "okey-dokey", "UH_OH": "uh-oh"}
-"""Names of files that differ from the names of their constants by more than capital letters."""
+"""Names of the files, without their endings, that are not the lower-case form of their constant's name, by that name.
+"""
 
 
 class SoundFile:
@@ -48,7 +49,9 @@ _NAMES: Mapping[type, Mapping[str, str]] = {
         f"{_IMAGES}/objects": "TARGET",
     },
 }
-"""Names of the constants, by class and folder."""
+"""Names of the constants of `SoundFile` and `ImageFile`, separated by blanks, by the class and the folder of their
+files.
+"""
 
 
 def _paths(of: type, extension: str) -> Iterator[tuple[str, str]]:
@@ -58,9 +61,9 @@ def _paths(of: type, extension: str) -> Iterator[tuple[str, str]]:
 
 
 SOUNDS: Mapping[str, str] = dict(_paths(SoundFile, ".wav"))
-"""Paths of `SoundFile`, by name."""
+"""Paths of the brick's sound files, by the name of the constant of `SoundFile`."""
 IMAGES: Mapping[str, str] = dict(_paths(ImageFile, ".png"))
-"""Paths of `ImageFile`, by name."""
+"""Paths of the brick's image files, by the name of the constant of `ImageFile`."""
 
 for _class, _files in ((SoundFile, SOUNDS), (ImageFile, IMAGES)):
     for _name, _path in _files.items():

@@ -15,10 +15,11 @@ _ALONE = "there is one brick; a server and a client in the threads of one progra
 
 CLIENT_WITHIN_MS = 5000
 POLL_MS = 10
-"""A server gives up if no thread of the program creates a client within the first of these times; the second is the
-interval of its checks."""
+"""A server looks every `POLL_MS` for a client that another thread of the program has created, and gives up after
+`CLIENT_WITHIN_MS`.
+"""
 CONNECT_MS, SEND_MS = 500, 10
-"""Estimated times of a connection and of a message, of which the library says nothing."""
+"""Estimated times in ms to connect two bricks and to send a message: Pybricks does not say how long they take."""
 
 
 class Mailbox(Connected):
@@ -169,14 +170,14 @@ class MailboxHandlerMixIn(Connected):
 
 
 _CONNECTION = "\0connection"
-"""Name of the mailbox in which a server waits for clients; no mailbox of a program has such a name."""
+"""Name of the hidden mailbox that tells a server of a new client; no mailbox of a program has such a name."""
 
 
 class BluetoothMailboxServer(MailboxHandlerMixIn):
     """The end of a Bluetooth connection that waits for clients."""
 
     newest: ClassVar[BluetoothMailboxServer | None] = None
-    """The server of this program, if it has one."""
+    """The newest server that the program has created; None before the first and after `server_close`."""
 
     def __init__(self) -> None:
         super().__init__()

@@ -20,11 +20,11 @@ from tuisim.engine.shim.unsupported.modules import Hardware, HardwareModule
 from tuisim.engine.shim.waits import Wait, waits_for
 
 TICKS_PERIOD = 1 << 30
-"""Counters of ticks begin again at 0 after this number."""
+"""The counters that `ticks_ms` and its like return begin again at 0 when they reach this number."""
 US = MS // 1000
 FOLDER = 0x4000
 FILE = 0x8000
-"""The kinds of entries that `ilistdir` yields."""
+"""`FOLDER` and `FILE` are the types of entries that `os.ilistdir` yields in MicroPython."""
 
 OF_PYTHON: Mapping[str, str] = {
     f"u{name}": name
@@ -53,7 +53,7 @@ OF_PYTHON: Mapping[str, str] = {
         "zlib",
     )
 }
-"""Python's modules, by MicroPython's name for them."""
+"""Names of Python's modules that stand in for MicroPython's modules, by MicroPython's name, such as `utime`."""
 
 _MACHINE = Hardware("the processor of the brick", "use the modules of pybricks")
 _MEMORY = Hardware("the memory of MicroPython", "leave it out: a program has more memory here")
@@ -73,9 +73,11 @@ BUILT_IN: Mapping[str, Hardware] = {
     "utimeq": Hardware("utimeq", "use a list, and sort()"),
     "uwebsocket": _NETWORK,
 }
-"""Built-in modules that can be imported but not used, by name."""
+"""Built-in modules of MicroPython that a program here can import but not use, by name."""
 INSTALLED: Mapping[str, Hardware] = {"umqtt": _NETWORK, "urequests": _NETWORK}
-"""Modules in files of the brick that can be imported but not used, by name: a file of the program comes first."""
+"""Modules, installed as files on the brick, that a program here can import but not use, by name; a module of that name
+beside the program comes first.
+"""
 
 
 class MicroPythonFinder:
@@ -240,17 +242,18 @@ LANGUAGE: Mapping[str, Any] = {
     "schedule": lambda function, argument: function(argument),
     "viper": _unchanged,
 }
-"""The names of `micropython` that can be used; the others are about its memory, and cannot."""
+"""The names of the module `micropython` that a program can use; its other names are about memory, and cannot be used.
+"""
 
 FREE_BYTES, USED_BYTES = 48_000_000, 200_000
-"""The free and the used memory that a program is told, an estimate: the brick has 64 MB."""
+"""Estimated free and used memory that `gc.mem_free` and `gc.mem_alloc` return: the brick has 64 MB."""
 
 GARBAGE: Mapping[str, Any] = {
     "mem_alloc": lambda: USED_BYTES,
     "mem_free": lambda: FREE_BYTES,
     "threshold": _without_effect,
 }
-"""The names that only MicroPython's `gc` has."""
+"""The names that MicroPython's `gc` has and Python's has not or has otherwise, with their values."""
 
 
 def _ilistdir(folder: str = ".") -> Iterator[tuple[str, int, int]]:
@@ -261,7 +264,7 @@ def _ilistdir(folder: str = ".") -> Iterator[tuple[str, int, int]]:
 
 
 FILES: Mapping[str, Any] = {"ilistdir": _ilistdir}
-"""The names that only MicroPython's `os` has."""
+"""The names that MicroPython's `os` has and Python's has not, with their values."""
 
 
 def _print_exception(error: BaseException, file: Any = None) -> None:
@@ -283,4 +286,4 @@ SYSTEM: Mapping[str, Any] = {
     ),
     "print_exception": _print_exception,
 }
-"""The names that only MicroPython's `sys` has."""
+"""The names that MicroPython's `sys` has and Python's has not or has otherwise, with their values."""

@@ -40,7 +40,7 @@ from tuisim.engine.shim.unsupported.modules import (
 )
 
 Names = dict[str, dict[str, Any]]
-"""Names of modules of the library, by module."""
+"""The names in each module of Pybricks with their values, by the module's name."""
 
 
 def _read_names(version: str) -> Names:

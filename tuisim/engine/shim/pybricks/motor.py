@@ -32,7 +32,9 @@ FACTORS: Mapping[str, int] = {
     "torque_unm": 1000,
     **dict.fromkeys(("actuation", "feed_forward"), PERCENT),
 }
-"""For each setting that is not in counts: the factor from the program's number to the controller's."""
+"""For each setting of a controller that is not in counts, the factor from the number that a program gives to the one
+that the controller stores.
+"""
 
 
 def gear_ratio(gears: Any) -> float:
@@ -85,7 +87,7 @@ class DCMotor(Connected):
         if found is None:
             raise no_device(self.brick.hint(MOTOR_CLASS))
         self.simulated: ServoMotor = found
-        """The simulated motor."""
+        """The motor of the simulation that this object controls."""
         self.tell(Call.SET_UP, float(direction.sign), ratio, float(keeps_angle))
 
     def tell(self, call: Call, *values: float | None) -> None:

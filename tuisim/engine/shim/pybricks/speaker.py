@@ -28,7 +28,7 @@ A4_HZ = 440.0
 OCTAVE = 4
 NOTES_AN_OCTAVE = 12
 FROM_A = {"C": -9, "D": -7, "E": -5, "F": -4, "G": -2, "A": 0, "B": 2}
-"""Semitones of each note above A of the same octave; negative below it."""
+"""Distance of each note from the A of the same octave in semitones; negative for notes below the A."""
 NOTE = re.compile(r"(?:R|([A-G])([#b]?)([2-8]))/(\d{1,2})(\.?)(_?)")
 NO_NOTES = frozenset({"Cb", "Fb", "E#", "B#"})
 """Spellings of notes that the firmware rejects; the tones have the names B, E, F and C."""

@@ -69,7 +69,7 @@ VERSION_4: Mapping[str, tuple[str, ...]] = {
     "pybricks.tools": ("AppData",),
     "pybricks.robotics": ("Car", "SpikeBase"),
 }
-"""Classes of version 4 that can be imported but not used, by module, on the EV3 and on hubs alike."""
+"""Classes of Pybricks 4 that can be imported but not used, on the EV3 and on hubs alike, by module."""
 HUB_CLASSES: Mapping[str, tuple[str, ...]] = {
     "pybricks.pupdevices": (
         *("ColorDistanceSensor", "ColorLightMatrix", "DuploTrain", "InfraredSensor"),
@@ -77,7 +77,7 @@ HUB_CLASSES: Mapping[str, tuple[str, ...]] = {
     ),
     **VERSION_4,
 }
-"""Classes of version 4 that can be imported but not used, by module, on hubs only."""
+"""Classes of Pybricks 4 that can be imported but not used on hubs, by module; those of `VERSION_4` are among them."""
 
 
 def refuse_hub(hub: str, name: str) -> NoReturn:

@@ -45,7 +45,7 @@ class Call:
     """One command in a line of the shell: a program with its arguments."""
 
     words: list[str]
-    """The program and its arguments."""
+    """The name of the program that is called, and its arguments."""
     joint: str = ";"
     """What joins the call to the one before: `;`, `&&`, or `|` for speech that `aplay` plays."""
     file: str = ""
@@ -79,7 +79,7 @@ class Streams:
     """The folder from which the process resolves relative paths; empty for the working directory of the user's program.
     """
     speech: Heard | None = None
-    """The speech that `espeak --stdout` has written for `aplay`; None if there is none."""
+    """The speech that `espeak --stdout` has written into a pipe for `aplay`; None if there is none."""
 
 
 def refuse(what: str, hint: str) -> Exception:

@@ -16,7 +16,7 @@ _PACKED = (
     "0sisg0eie20eggg0684o88e870iiif0hha40hhlr0icci0ha4o0u48u64c4688888o8c8o00c30"
 )
 CHARACTERS = tuple(_PACKED[at : at + 5] for at in range(0, len(_PACKED), 5))
-"""The pictures of the characters from the blank to `~`."""
+"""The pictures of the ASCII characters from the blank to `~`, in order, each as five digits of base 32."""
 DIGITS = ["33333", "11111", "31323", "31313", "23311", "32313", "32333", "31111", "33033", "33313"]
 """The pictures of the digits 0 to 9, which use only the right two columns of the matrix; `<< 3` moves such a picture to
 the left two.
@@ -59,4 +59,4 @@ ICONS: Mapping[str, str] = {
     "TRUE": "12k80",
     "FALSE": "ha4ah",
 }
-"""The pictures of `Icon`, by their names."""
+"""The pictures of Pybricks' `Icon`, by name, each as five digits of base 32."""
