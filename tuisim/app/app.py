@@ -126,9 +126,7 @@ class AppSettings:
     lessons_folder: str | None = None
     """Folder of own lessons that the user has named; None if the user has named none."""
     welcomes: bool = False
-    """Whether to show the welcome at the first start or if there is recent work: the command line names nothing to
-    open.
-    """
+    """Whether to show the welcome (only at the first start, or if there is recent work): nothing was named to open."""
     replay: StoredRun | None = None
     """A stored run to show; None for none. `spec` and `program` are then those of the stored run."""
     panels_on: frozenset[str] = field(default_factory=frozenset)

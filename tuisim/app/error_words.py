@@ -9,7 +9,7 @@ from tuisim.base.errors import TuisimError
 from tuisim.terminal.text_runs import cut
 
 _KIND = re.compile(r"^[\w.]+: ")
-"""The class of an error, which says less than its message."""
+"""Pattern of the error's class in front of a message; a short description leaves it out, as it says least."""
 _MEANT = re.compile(
     r"'(?P<wrong>\w+)'(?: is not defined\. Did|\. Did|, did) you mean:? (?P<quote>'?)(?P<meant>[\w.]+)(?P=quote)\?"
 )

@@ -29,17 +29,17 @@ Series = dict[str, tuple[list[float], list[float]]]
 """Times in s and values, by the name of the trace."""
 
 Points = tuple[list[float], list[float]]
-"""x and y in mm, NaN where the pen was lifted."""
+"""x and y in mm of the points of the pen's trace, NaN where the pen was lifted."""
 
 POINTS_A_FEED = 60
-"""Most telemetry moments that one call measures; each one costs a reading of every sensor."""
+"""Maximum number of telemetry moments for which one call reads every sensor, so that the call stays short."""
 POINTS_OF_A_RUN = 1500
-"""Approximate number of moments measured of a run that began before the panel was shown."""
+"""A chart that is shown when a run has long begun gets about so many moments of the earlier telemetry."""
 TRACE_POINTS_A_FEED = 4000
 _MIN_LAG_S = 0.3
-"""A shorter lag of the chart is not seen."""
+"""If the chart lags less than so many seconds behind the printed samples, the app does not say so: nobody sees it."""
 _JUMP_MM = 25.0
-"""No wheel moves the pen this far in one tick: the robot was placed elsewhere."""
+"""If the pen moves at least this far in one tick, the robot was placed elsewhere: no wheel is so fast."""
 
 
 def sample_series(rows: Iterable[OutputRow]) -> Series:
@@ -61,13 +61,13 @@ class Feed:
 
     recording: Recording
     _parts: int = field(default=0, init=False)
-    """Number of plugged in parts for which the chart has columns."""
+    """Number of plugged-in parts for which the chart has columns; if more are plugged in, the chart begins again."""
     _charted: int = field(default=0, init=False)
     _traced: int = field(default=0, init=False)
     _lifted: bool = field(default=False, init=False)
-    """Whether the pen was up in the last traced record."""
+    """Whether the pen was up in the last tick record whose position was added to the trace."""
     _last_xy_mm: tuple[float, float] | None = field(default=None, init=False)
-    """Position of the robot in the last traced record."""
+    """Position of the robot in the last tick record that was added to the trace; None before the first."""
 
     @property
     def is_behind(self) -> bool:
@@ -209,7 +209,7 @@ def _thin_positions(start: int, end: int, max_count: int) -> list[int]:
 
 
 PAST_ROWS = 200
-"""Number of output rows shown of a past instant."""
+"""Maximum number of output rows that are shown while a past instant is in view."""
 
 
 class PanelFeed:
@@ -225,9 +225,9 @@ class PanelFeed:
         self._runs = runs
         self._feed: Feed | None = None
         self._uncharted: list[OutputRow] = []
-        """Output rows since the chart was last on the screen."""
+        """Output rows that have not been passed to the chart, because the chart is not on the screen."""
         self._charted_s = 0.0
-        """When telemetry was last passed to the chart, on the monotonic clock."""
+        """Time on the monotonic clock at which telemetry was last passed to the chart."""
         self._shows_past = False
         self._traced: object = None
         self._printed: object = None

@@ -91,7 +91,7 @@ class FormPanel(Vertical):
     """A panel with text fields, and a last line for errors."""
 
     USE: ClassVar[str] = ""
-    """The last line while there is no error."""
+    """Help that the last line shows while there is no error."""
 
     def say(self, wrong: str) -> None:
         """Show an error in the last line; an empty text removes it."""
@@ -148,7 +148,7 @@ class Row(Vertical):
         text: str
         """The text that the user typed."""
         by: int = 0
-        """Number of choices to go forward; negative goes back, 0 for a typed text."""
+        """Number of choices to go forward in the list; negative to go back, 0 if the user has typed a text."""
 
     def __init__(self, field: str, label: str, chosen: bool) -> None:
         super().__init__()
@@ -260,7 +260,7 @@ class Slider(_Control):
         slider: Slider
         value: int
         done: bool = True
-        """False while the mouse holds the knob or digits are typed; the last number is posted again at the end."""
+        """False while the mouse holds the knob or digits are typed; then the final number is posted again with True."""
 
         @property
         def control(self) -> Slider:

@@ -28,9 +28,9 @@ if TYPE_CHECKING:
     from tuisim.tasks.goals.spec import Goal
 
 PERIOD_S = 0.5
-"""Least time between two judgements of a run that goes on."""
+"""Minimum number of seconds between two judgements of a run that goes on."""
 _SHARE = 0.1
-"""Largest share of the time that judging takes: a long recording is judged less often."""
+"""Maximum share of the time that judging a run may take: the longer a judgement takes, the later the next one is."""
 
 
 class GoalsController:
@@ -56,18 +56,18 @@ class GoalsController:
         self._run_controller = run_controller
         self._panel_area = panel_area
         self.file = file
-        """The goals that runs are judged by; None if there are none."""
+        """The open goals, by which runs are judged; None if no goals are open."""
         self._recording: Recording | None = None
-        """The run that `_judgements` are about."""
+        """The run to which `_judgements` apply."""
         self._earlier: Recording | None = None
-        """A run of another task, which is not judged by these goals."""
+        """A run of another task that was in view when the goals were opened; it is not judged by these goals."""
         self._judgements: tuple[Judgement, ...] = ()
         self._judged: object = None
-        """How far the recording had been written when it was last judged, or is being judged."""
+        """Run, goals, and how far the recording was written, at the last judgement; nothing is judged twice."""
         self._is_judging = False
         self._next_s = 0.0
         self.judges_always = False
-        """Whether runs are judged while the panel is closed."""
+        """Whether runs are judged even while the panel of the goals is closed."""
 
     @property
     def path(self) -> Path | None:

@@ -16,7 +16,7 @@ from tuisim.engine.files import MAX_FILE_BYTES
 
 FOLDER = "breaks"
 MAX_KEPT = 200
-"""Maximum number of breakpoints, and of watches, of one program that are read."""
+"""Maximum number of stored breakpoints of a program that are read, and of its watches; further ones are ignored."""
 
 
 @dataclass(frozen=True, slots=True)

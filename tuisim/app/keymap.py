@@ -27,7 +27,7 @@ _TAKEN = {
     "ctrl+c": "copies",
     "ctrl+q": "quits",
 }
-"""Keys that no other action can have, and what they do."""
+"""Keys that the user cannot give to an action, and what each of them does."""
 _SAME = {
     "ctrl+i": "tab",
     "ctrl+m": "enter",
@@ -35,7 +35,7 @@ _SAME = {
     "esc": "escape",
     "return": "enter",
 }
-"""Keys that a terminal sends as another one, and other names of them."""
+"""Keys for which a terminal sends another key, and other names of keys, each with the key that it stands for."""
 _NAMED = frozenset(
     key.value.rpartition("+")[2] for key in Keys if key.value.isprintable() and key.value[0] != "<"
 )

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from tuisim.tasks.lessons.session import WorldJudgements, WorldTrial
 
 _ROOMY_ROWS = 33
-"""In a lower terminal the text of a lesson needs the space of the instrumentation panel."""
+"""In an area with fewer rows than this, the text of a lesson takes the space of the instrumentation panel."""
 
 
 class LessonController:
@@ -67,7 +67,7 @@ class LessonController:
         self.session = LessonSession(lesson) if lesson is not None else None
         self.folder = folder
         self._beside: LessonPanel | None = None
-        """The panel beside a log that is open above the app."""
+        """The panel with the lesson beside an open log, on a screen above the app's; None without one."""
 
     @property
     def lesson(self) -> Lesson | None:

@@ -64,19 +64,20 @@ class Loader:
         self.goals = goals
         self._watch = FileWatch()
         self.is_preparing = True
-        """Whether the mat of the next run is being prepared, or will be: at first the app is drawn."""
+        """Whether the mat of the next run is being prepared, or waits to be: at the start, the app is drawn first."""
         self._good: tuple[NextRun, Mat] | None = None
-        """The last mat that was prepared, with its plan."""
+        """The last mat that could be prepared, and the plan of the run for which it was; None before the first."""
         self.world_file = world_file
-        """The world file that was last opened or saved."""
+        """Path of the world file that was last opened or saved; None without one."""
         self._world_settings: Mapping[str, Any] = {}
         self._world_refers: tuple[Path, ...] = ()
         self._magic_settings: Mapping[str, Any] = {}
-        """Settings of the world file and the magic line when last read, to detect what changes in them."""
+        """Settings of the magic line when it was last read, as `_world_settings` are those of the world file; a later
+        reading is compared with them."""
         self._file_prelude = ""
-        """The prelude that the program's file asks for; the command line may have chosen another one."""
+        """Prelude that the program's file asked for when it was last read; the command line may have chosen another."""
         self._changed_in_run: list[Path] = []
-        """Files that changed during the run."""
+        """Watched files that have changed on disk during the run; they are reloaded when the run ends."""
 
     def begin(self) -> None:
         """Store the settings of the files that the command line has opened, and watch these files."""

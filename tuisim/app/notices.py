@@ -17,7 +17,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.terminal.textual_internals import NOTICE_LAYER, can_show_notices, is_leaving
 
 CHARACTERS_A_SECOND = 25
-"""How fast a notice is read."""
+"""Number of characters of a notice that a user is assumed to read in a second."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +27,7 @@ class Notice:
     message: str
     severity: SeverityLevel
     timeout_s: float
-    """How long the notice is shown; longer if it takes longer to read. Infinite: until the next key does something."""
+    """Seconds for which the notice is shown, more if reading it takes longer. Infinite: until a key does something."""
 
     @property
     def stays(self) -> bool:
@@ -108,7 +108,7 @@ class Notices:
     def __init__(self, app: App[Any]) -> None:
         self._app = app
         self.leave_rows: Callable[[int], None] = lambda _: None
-        """Leaves some rows below the panels free for a notice."""
+        """Makes the panels leave a number of rows free below them, in which a notice is shown; 0 for none."""
         self._row: NoticeRow | None = None
         self._waiting: deque[Notice] = deque()
         self._told: list[tuple[float, Notice]] = []

@@ -47,9 +47,9 @@ if TYPE_CHECKING:
 
 PanelWidget = TypeVar("PanelWidget", bound=Widget)
 _READINGS_ROWS = 36
-"""In an area of so many rows, all readings have room below the world."""
+"""In an area of at least so many rows, maximized readings leave room for the world above them."""
 _STACKED_ROWS = 18
-"""In a lower area there is no room for a lesson below a panel that needs the whole width."""
+"""Minimum rows of an area in which a lesson has room below a panel that needs the whole width."""
 
 
 _READINGS = ("instrumentation", "arrays", "positioning")
@@ -57,7 +57,7 @@ _READINGS = ("instrumentation", "arrays", "positioning")
 _READINGS_PERIOD_S = 0.1
 """Seconds between two updates of the readings: values that change faster cannot be read."""
 _ARRAYS_PERIOD_S = 0.25
-"""All pixels of the discs may change at once: with them, a shorter period would saturate a slow link."""
+"""Seconds between two updates of the readings while the sensor arrays are shown, which a slow link can carry."""
 
 
 class _Mounted(Generic[PanelWidget]):
@@ -94,35 +94,35 @@ class PanelArea(Container):
     def __init__(self, on: frozenset[str], off: frozenset[str]) -> None:
         super().__init__(id="panel-area")
         self.panels: dict[str, Widget] = {}
-        """The panels that have been mounted, by id."""
+        """The panels that have been mounted, by id; a panel is mounted when it is first shown."""
         self.arrangement = PanelLayout()
         """The boxes of the panels on the screen."""
         switched = {**dict.fromkeys(on, True), **dict.fromkeys(off, False)}
         self._given = {panel: switched[panel] for panel in PANELS if panel in switched}
-        """Panels shown or hidden by options, which are not kept."""
+        """Panels that options of the command line have shown (True) or hidden; not stored with the arrangement."""
         self._asked = dict(self._given)
-        """Panels that were requested to be shown (True) or hidden, the latest last."""
+        """Panels that options, keys or lessons have shown (True) or hidden, by id, the latest last."""
         self._chosen: dict[str, bool] = {}
-        """Panels that the user has shown or hidden by their keys, which can be kept with the preset."""
+        """Panels that the user has shown (True) or hidden by their keys, by id; they can be stored with the preset."""
         self.preset = Preset.STANDARD
         self.alone = ""
-        """Id of the maximized panel, empty for none."""
+        """Id of the panel that is maximized; empty for none."""
         self.clicked = ""
-        """The panel clicked last, if it cannot have the focus, until another one gets it."""
+        """Id of the panel that was clicked last, if it cannot have the focus; empty once another one gets the focus."""
         self.front = "world"
-        """The panel shown last or with the focus, which is shown where there is room for one only."""
+        """Id of the panel that was shown or focused last; where only one panel has room, it is this one."""
         self._is_loaded = False
         """Whether the stored arrangement has been loaded."""
         self.is_stacked = False
-        """Whether a roomy panel stands above the lesson, and nothing else is shown."""
+        """Whether two panels fill the area, one above the other, such as the code above a lesson."""
         self.is_beside = False
-        """Whether a roomy panel stands beside the world."""
+        """Whether a panel that needs much room, such as the code while the user types, stands beside the world."""
         self._snapshot: Snapshot | None = None
         self._throttle = Throttle(self, _READINGS_PERIOD_S, self._show_readings)
         self._roomy: tuple[str, int, int] | None = None
-        """The panel that needs a number of columns and rows."""
+        """The panel that needs much room now, with the columns and rows that it needs; None for none."""
         self._free_rows = 0
-        """The number of rows below the panels that a notice covers."""
+        """Number of rows below the panels that are left free for a notice."""
 
     # A hidden panel still gets data; a panel that was never shown is None.
 

@@ -29,11 +29,11 @@ if TYPE_CHECKING:
     from tuisim.app.panels.world import World
 
 ROOMY_ROWS = 15
-"""A code panel with fewer rows, or too narrow for lines of 79 characters, grows while the user types."""
+"""A code panel with fewer rows, or too narrow for lines of 79 characters, becomes larger while the user types."""
 _HIGH_ROWS = 35
-"""A code panel with fewer rows grows, too, if its lines are whole beside the world."""
+"""The same number of rows in an area that is wide enough for the world beside lines of 79 characters."""
 _LESSON_COLUMNS = 74
-"""Columns that are enough while the text of a lesson is beside the code."""
+"""Columns that a code panel needs while the user types and the text of a lesson is shown."""
 
 
 _BUTTONS = re.compile(
@@ -60,7 +60,7 @@ class PanelMessages(LabHost):
 
     context: ActionContext
     has_hinted = False
-    """Whether a notice has named the panel of the brick."""
+    """Whether a notice has told the user about the panel of the brick."""
 
     def suggest_brick(self, does: str) -> None:
         """If the panel of the brick is hidden, name its key in a notice, once in a session.

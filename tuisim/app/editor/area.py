@@ -41,9 +41,9 @@ _UNSHOWN = re.compile(r"[\x00-\x08\x0a-\x1f\x7f-\x9f\uf700-\uf707]")
 
 VALUE_GAP = 2
 MIN_VALUE_CELLS = 10
-"""Cells between a line and the values behind it, and those that the line leaves to values that need more than half."""
+"""Cells for values behind a line if they need more than half of the width; `VALUE_GAP` cells are before values."""
 _CURSOR_COLS = 3
-"""Cells of the cursor and of what follows it that are scrolled into view."""
+"""If so many cells from the cursor on are visible with the text at its left edge, the text is scrolled there."""
 
 EDITOR_KEYS = (
     ("Enter", "Start editing; Escape ends it"),
@@ -62,7 +62,7 @@ EDITOR_KEYS = (
     ("ctrl+a", "Select all"),
     ("ctrl+x ctrl+c ctrl+v", "Cut, copy, paste"),
 )
-"""For the help: what each key does while the cursor is in the text."""
+"""Keys that have an effect while the cursor is in the program's text, and what each does, for the help."""
 
 
 class EditorCommand(StrEnum):
@@ -123,18 +123,18 @@ class CodeArea(TextArea):
         self._breaks: Mapping[int, str] = {}
         self._lit = self._error = 0
         self.is_completing = False
-        """Whether names are looked up: keys wait for them, however long it takes."""
+        """Whether names are being looked up; keys wait until the look-up ends, however long it takes."""
         self.unknown_word: str | None = None
-        """The word at the cursor if no possible name begins with it; None after something else was typed."""
+        """The word at the cursor, if a look-up has found no name that begins with it; else None."""
         self.path = ""
         """Path of the program's file, or its name."""
         self.candidates = CandidateList()
-        """The list of possible names; the text passes keys on to it."""
+        """The list of names that may complete the word at the cursor; the editor passes keys on to it."""
         self._unknown: tuple[UnknownName, ...] = ()
         self.can_be_typed_in = False
-        """Whether a click makes the next letter start typing."""
+        """Whether, after a click on the text, the next letter starts typing."""
         self.awaits_letters = False
-        """Whether the next letter starts typing: the text was clicked."""
+        """Whether the next letter starts typing, because the user has clicked the text."""
         self._values: Mapping[int, Sequence[Variable]] = {}
         super().__init__(
             read_only=True,
@@ -628,7 +628,7 @@ class CodeArea(TextArea):
 
 
 _NAME_ENDINGS = frozenset(".(")
-"""What is typed after the name of an object or a function."""
+"""Characters that follow a name: if the user types one, the chosen name of the list completes the word first."""
 
 _TYPING_ACTIONS = frozenset(
     {
@@ -649,7 +649,7 @@ _WHILE_TYPING = {
     "ctrl+n": EditorCommand.NEW,
     "ctrl+o": EditorCommand.OPEN,
 }
-"""Usual editor keys; while the user does not type, the last two are keys of the robot and the obstacles."""
+"""Keys of commands while the user types; at other times, ctrl+n and ctrl+o are keys of the robot and obstacles."""
 
 _CHANGES: Mapping[str, text_lines.Change] = {
     "tab": text_lines.indent_lines,

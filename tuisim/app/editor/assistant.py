@@ -21,11 +21,11 @@ from tuisim.programs.names import (
 from tuisim.terminal.text_runs import cut
 
 CHECK_DELAY_S = 0.5
-"""Names are checked when nothing has been typed for this long."""
+"""Seconds without typing after which the names in the program are checked."""
 ASK_DELAY_S = 0.15
-"""The signature, or what may follow a dot, is looked up when nothing has been typed for this long."""
+"""Seconds without typing after which the signature of a call, or what may follow a dot, is looked up."""
 MAX_LINES = 5000
-"""Longer texts are not checked: it would hold up the keys."""
+"""Programs with more lines than this are not checked for mistakes, because the check would delay the keys."""
 
 
 class Assistant:

@@ -143,7 +143,7 @@ class CandidateList(Widget):
         self.is_offered = False
         """Whether the list opened by itself: then only enter, tab and a click write a name into the text."""
         self.begin = (0, 0)
-        """Row and column of the word that is completed."""
+        """Row and column at which the word that is being completed begins."""
 
     @property
     def is_open(self) -> bool:

@@ -29,9 +29,9 @@ if TYPE_CHECKING:
 Result = TypeVar("Result")
 
 MAX_DESCRIBED = 200
-"""Maximum number of candidates with a signature and a line of help, which take long in a large library."""
+"""Maximum number of candidates that get a signature and help, which take long; further ones are only names."""
 MAX_CALL_LINES = 20
-"""Number of lines, from the cursor upwards, in which the beginning of a call is looked for."""
+"""Number of lines, from the cursor's line upwards, in which the beginning of a call is searched for."""
 
 _PACKAGE = Path(__file__).resolve().parents[2]
 _NAMES = _PACKAGE / "engine" / "shim" / "names"
@@ -46,7 +46,7 @@ _SIMULATED_NAMES = frozenset(
 _GENERAL = frozenset({"ev3dev2", "ev3dev2.sensor"})
 """Modules of the classes that all devices of `ev3dev2` share, which few programs use."""
 _COURSE_ATTRIBUTES = frozenset({"reflected_light_intensity_pc", "full_reflected_light_intensity"})
-"""Attributes that colour sensors have while a program runs, however they were made."""
+"""Attributes that every colour sensor has while a program runs, whatever class or factory made it."""
 _LIBRARIES = ("ev3dev2", "tuisim.engine.shim.names.course", "time")
 _USUAL = (
     "on",
@@ -59,17 +59,17 @@ _USUAL = (
     "is_pressed",
     "sleep",
 )
-"""Patterns of what most programs use of the libraries, in the order of a list."""
+"""Patterns of the library names that most programs use, in the order in which a list of candidates has them."""
 _UNUSUAL = frozenset({"mro"})
 _HELP = {
     "reflected_light_intensity": "Reflected red light from 0 to 255, or to 100 under the profile `ev3`"
 }
-"""Help in place of docstrings that are true only of a brick."""
+"""Help for names whose docstrings are true only of a real brick, by name; it is shown in place of the docstring."""
 _EXTENSIONS = [path for path in sys.path if path.endswith("lib-dynload")]
 _PACKAGE_FOLDERS = frozenset({"site-packages", "dist-packages"})
 """Names of folders into which packages are installed."""
 _WARM_UP_PLACE = "colorLeft.r", "", 0, len("colorLeft.r")
-"""The first question to Jedi, as arguments of `find_candidates`: what an object of the prelude has."""
+"""Arguments of a first call of `find_candidates`, which warms up Jedi: attributes of an object of the prelude."""
 _asking = Lock()
 
 
@@ -93,7 +93,7 @@ class Signature:
     name: str
     parameters: tuple[str, ...]
     index: int | None
-    """Number of the parameter at the cursor, from 0; None if there is none."""
+    """Index, from 0, of the parameter for which the cursor is at the argument; None if there is no such parameter."""
 
 
 def find_word(line: str, column: int) -> str | None:

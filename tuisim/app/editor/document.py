@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from tuisim.programs.program_file import Mistake
 
 DRAFT_DELAY_S = 1.0
-"""Delay after an edit before unsaved text is stored as a draft, in case of a crash."""
+"""Seconds after an edit until the unsaved text is stored as a draft, in case of a crash."""
 NEW_NAME = "new.py"
 
 
@@ -63,18 +63,18 @@ class Document:
         from it."""
         self._form = TextFormat()
         self._seeks_error = False
-        """Whether the code panel is to move to the marked error as soon as it is there."""
+        """Whether the code panel, as soon as it is shown, must move to the line that is marked as an error."""
         self._is_file = False
-        """Whether the text came from the file, so that saving there needs no question."""
+        """Whether the text was read from its file or saved there, so that saving needs no question."""
         self._draft_pending = self._asking = False
         self._restored = ""
-        """Path of the program whose unsaved text is being opened."""
+        """Path of the program whose draft is just being restored; empty for none."""
         self._error_line = 0
         """Line of the current run's text at which it ended with an error; 0 for none, or once the text has changed."""
         self._error_words = ""
         """The error at that line in words; empty if it is unknown."""
         self._ran: tuple[Recording, str] | None = None
-        """A recording, and the text that it ran, as it was in the editor."""
+        """The recording in view, and the text that it ran, as it was in the editor; None without a recording."""
 
     @property
     def name(self) -> str:

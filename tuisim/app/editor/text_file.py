@@ -33,7 +33,7 @@ class TextFormat:
     has_mark: bool = False
     """Whether the file begins with a byte order mark."""
     newline: str = "\n"
-    """The line end of most lines."""
+    """The line end that most lines of the file have."""
 
 
 def read_text(path: Path) -> tuple[str, TextFormat]:

@@ -9,7 +9,7 @@ from difflib import SequenceMatcher
 from tuisim.base.source import source_lines
 
 Change = Callable[[Sequence[str]], list[str]]
-"""A function that returns edited lines."""
+"""A function that takes lines of text and returns them edited."""
 
 INDENT = "    "
 _LEAVES = re.compile(r"\s*(return|pass|break|continue|raise)\b")
@@ -101,7 +101,7 @@ def count_same_lines(lines: Sequence[str], other: Sequence[str]) -> int:
 
 
 MAX_COMPARED = 400
-"""Up to this many changed lines are compared one by one; of more, only the lines before and after are mapped."""
+"""If the changed part of a text has more lines than this, its lines are not compared, and none is mapped."""
 
 
 class LineMap:

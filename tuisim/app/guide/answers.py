@@ -18,13 +18,14 @@ from tuisim.guide.search import SearchResult, compile_pattern
 
 _FIRST_LINES = 11
 _LINES = ((9, 1), (6, 1), (3, 1), (3, 0))
-"""Lines of a further answer and of the gap below it: the first pair with which all answers fit, else the last."""
+"""Maximum lines of an answer after the first, and lines of the gap below it; the first pair with which all answers fit
+is used, else the last."""
 _EDGES = 3
 """Columns beside the text: a space at each side, and the scroll bar."""
 _MIN_COLUMNS = 20
 _ITEM = "• "
 STANDS_OUT = Style(bold=True, color=palette.WHITE)
-"""Style of the words of the question."""
+"""Style of the words of the user's question where they occur in an answer."""
 _SECTION, _PAGE, _TEXT = (
     Style(bold=True, color=palette.BLUE),
     Style(color=palette.SOFT),

@@ -19,11 +19,11 @@ from tuisim.guide.tables import Table, code
 from tuisim.settings.user_config import UserConfig
 
 EVERYWHERE = (("tab", "Next panel or field"), ("Escape", "Leave a field"))
-"""Keys that are no lines of the app's table."""
+"""Keys that have an effect on every screen and are no actions in the app's table, and what each does."""
 
 
 _FEW = 3
-"""Maximum number of keys with the same effect that are all named; of more, the first and the last are."""
+"""Up to so many keys with the same effect are all named; of more keys, only the first and the last are."""
 
 
 def own_keys(widgets: Iterable[DOMNode]) -> list[KeyWord]:

@@ -45,7 +45,7 @@ class Topic:
     page: str = ""
     """Name of the page; empty for the page with every key."""
     groups: tuple[str, ...] = ()
-    """The groups of keys that stand above the page, or before all others."""
+    """Names of the groups of keys that stand above the page; on the page with every key, they are the first groups."""
 
 
 _TIME = ("Program", "Time")
@@ -67,21 +67,22 @@ TOPICS: Mapping[str, Topic] = {
     "goals": Topic("goal-files"),
     "settings": Topic("options"),
 }
-"""The topics by id of the panel."""
+"""The topics by the id of the panel that they are about."""
 
 
 _SIDE_BY_SIDE = 100
 _PREVIEW = 66
-"""Columns from which the contents stay beside a page that is being read, and from which a page is shown beside them."""
+"""From `_SIDE_BY_SIDE` columns on, the contents stay beside a page that is read; from `_PREVIEW` columns on, a page is
+shown beside the contents."""
 _SEARCH_AGAIN_S = 0.15
 _SEARCHING = "searching …"
 _CORNERS = 4
-"""Columns of a frame beside its title."""
+"""Columns of the frame's upper edge that its title cannot have."""
 
 _FOUND = Style(bgcolor=design.CHOSEN)
 """The style of a passage that a search has found."""
 _ROWS_OF_PASSAGE = 6
-"""Minimum number of rows of a passage that are in view."""
+"""If fewer rows of a found passage than this fit below its heading, the view begins with the passage instead."""
 
 Place: TypeAlias = tuple[str, str]
 """The name of a page, empty for the keys, and a heading in it, empty for its beginning."""
@@ -162,11 +163,11 @@ class _Page(VerticalScroll):
         self._keys = keys
         self._topic = topic
         self.place: Place = (topic.page, "")
-        """The page in view, and the section to which the user went."""
+        """The name of the page in view, and the heading of the section to which the user went."""
         self._with_keys = bool(topic.page)
         """Whether the keys of the topic stand above the page."""
         self._passage = ""
-        """What a search has found in view, in Markdown."""
+        """The passage of the page that a search has found, in Markdown; empty for none."""
         self.drawn_columns = 0
         """The number of columns for which the page was drawn; 0 if it was not visible."""
         self._text = Static(markup=False)

@@ -48,16 +48,16 @@ from tuisim.settings.preferences import get_preference, keep
 _MIN_CODE_COLS = 120
 """In a narrower area, the standard preset shows no code, and beside the debug panel neither chart nor arrays."""
 _MIN_EDITOR_COLS = 110
-"""From this width on, the code that is typed in stands beside the world."""
+"""From this width of the area on, the code stands beside the world while the user types in it."""
 _MIN_STRIP_COLS = 190
-"""From this width on, the world may give rows to what is below it."""
+"""From this width of the area on, the bottom strip may take up to `MAX_TAKEN_ROWS` rows from the world."""
 EDITOR_COLS = 86
-"""Columns in which lines of 79 characters are whole."""
+"""Width in columns of a code panel that shows lines of 79 characters whole."""
 _MAX_WASTE = 0.3
-"""A form in which a larger share of the world's panel is empty counts as poor."""
+"""A form that leaves a larger share of the world's panel empty around the mat has its score multiplied by `_POOR`."""
 _POOR = 0.7
 _MIN_FILLED = 0.6
-"""A form other than the first of a preset is not chosen if the mat fills less of the world's panel."""
+"""Minimum share of the world's panel that the mat must fill, so that a form after the preset's first is chosen."""
 
 
 class Preset(StrEnum):
@@ -86,16 +86,16 @@ class _Plan:
     """What a preset consists of: the panels that it shows, and functions (forms) that arrange panels in an area."""
 
     core: tuple[str, ...]
-    """Panels that the preset always shows, the most important first."""
+    """Ids of the panels that the preset always shows, the most important first."""
     fill: tuple[str, ...]
-    """Panels that fill the remaining space."""
+    """Ids of the panels that fill the remaining space, as far as they fit."""
     forms: tuple[Form, ...]
     low: tuple[str, ...]
-    """Panels that a low terminal shows instead, the most important first."""
+    """Ids of the panels that a low terminal shows instead of `core`, the most important first."""
     beside: tuple[str, ...] = ()
-    """Further panels, one for each column that the terminal has beyond those of `core`."""
+    """Ids of further panels: the wider the area, the more of them it shows, one more for each `COLUMN_COLS` columns."""
     compact: bool = True
-    """Whether a larger world is worth panels that show less than everything."""
+    """Whether the form with the larger world is chosen even if other panels then show less than everything."""
 
 
 _SHOWN = tuple(info.id for info in PANELS.values() if info.sizes)
@@ -410,7 +410,7 @@ class KeptLayout:
 
     preset: Preset = Preset.STANDARD
     asked: dict[str, bool] = field(default_factory=dict)
-    """Panels that were shown or hidden by their keys, the latest last."""
+    """Panels that the user has shown (True) or hidden by their keys, by id, the latest last."""
 
 
 def load_layout(size: TerminalSize) -> KeptLayout:

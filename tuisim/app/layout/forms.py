@@ -19,20 +19,20 @@ from tuisim.app.layout.tree import (
 from tuisim.app.panels import PANELS, PanelPlace, TerminalSize
 
 MIN_STRIP_COLS = 36
-"""A panel of the bottom strip is not made narrower than this to fit another one next to it."""
+"""Minimum width of a panel in the bottom strip; in a narrower strip, panels stand one above the other."""
 _SINGLE_COLS, _SINGLE_ROWS = 60, 15
-"""Below this size one panel is shown at a time."""
+"""In a lower area, or in a narrower one of fewer than `_TALL_ROWS` rows, one panel is shown at a time."""
 _TALL_ROWS = 30
-"""From this height on, narrow panels stand below each other, as on a phone with large text."""
+"""From this number of rows on, a narrow area shows panels below each other, as on a phone with large text."""
 LOW_COLS, LOW_ROWS = 112, 33
-"""Below both, the panels share the screen as in a terminal of 80×24."""
+"""In a terminal with fewer columns and fewer rows than these, panels share the screen as in one of 80×24."""
 MIN_LARGE_COLS, _MIN_LARGE_ROWS = 170, 50
 _BOARD_COLS, _BOARD_ROWS = 100, 30
 """From this size of terminal on, world, readings, sensor arrays and chart are shown at once."""
 DISCS_COLS = 42
 """Columns of the side column in which two sensor discs fit side by side."""
 _READINGS_COLS, _TEXT_COLS = 48, 32
-"""Columns of the readings in three lines, and of the output beside them."""
+"""Columns that the readings need for three lines, and columns that are left to the output beside the readings."""
 _MAX_SIDE_COLS = 46
 _CODE_COLS = 64
 """Columns in which most lines of code are whole, with the values beside them."""
@@ -45,19 +45,19 @@ _LEAST_CHART_COLS = 64
 """Lines of an example are whole in `_LINE_COLS` columns; a chart beside such code, above the output, gets at least
 `_LEAST_CHART_COLS`."""
 _STACKED_ROWS = 14, 7
-"""Rows of a chart beside the code, and of the output below the chart."""
+"""Minimum rows of a chart beside the code, and of the output below that chart."""
 MAX_TAKEN_ROWS = 7
 """Maximum number of rows that a strip with chart and output takes from the world."""
 _ERROR_ROWS = 8
-"""Rows of the panels below code in the whole width, so that *Output* shows an error with its traceback."""
+"""Minimum rows of each panel below code in the whole width, so that *Output* shows an error with its traceback."""
 COLUMN_COLS = 40
-"""Columns below the world are not made narrower."""
+"""Minimum width of a column of panels below the world; if the area is too narrow, there are fewer columns."""
 _LEAST_TEXT, _MOST_TEXT = 40, 58
-"""Columns for text to read, if that is at most half of the screen."""
+"""Minimum and maximum columns of a side column with a lesson; it never has more than half of the screen."""
 
 
 Form = Callable[[Sequence[str], int, int], Node]
-"""Returns the tree of some panels for a number of columns and rows."""
+"""A function that arranges panels: it returns their tree for an area of a number of columns and rows."""
 
 
 def classify_size(width: int, height: int) -> TerminalSize:
@@ -226,13 +226,13 @@ def _place_wide(
 _STRIP_ROWS = 12
 _LOW_CODE_STRIP_ROWS = 13
 _CODE_STRIP_ROWS = 17
-"""Rows of the strip below the board: for chart and output beside each other, and beside code on a low and a high
-screen."""
+"""Rows of the strip below the world: `_STRIP_ROWS` for chart and output only; with code or brick,
+`_LOW_CODE_STRIP_ROWS` on a low screen, and `_CODE_STRIP_ROWS` on a high one."""
 _CHART_ROWS = 11
 _CHART_SHARE = 5 / 8
-"""Share of the width that the chart gets beside the output."""
+"""Share of the strip's width, from 0 to 1, that the chart gets if only the output is beside it."""
 _MAX_EMPTY_ROWS = 3
-"""Maximum number of rows by which readings beside the world make it higher than its mat needs."""
+"""Maximum number of rows by which the world is higher than its mat needs, so that the readings beside it fit."""
 
 
 def build_board(panels: Sequence[str], width: int, height: int) -> Node:
@@ -299,7 +299,7 @@ _TIGHT_ROWS: Mapping[str, int] = {
     "chart": 10,
     "arrays": 9,
 }
-"""Rows in which these panels are read on a narrow and high screen."""
+"""Rows with which a panel can just be read in a narrow and high area, by id; other panels need their `fair_rows`."""
 
 
 def count_tight_rows(panels: Sequence[str], width: int) -> list[int]:
@@ -361,13 +361,13 @@ def build_below(panels: Sequence[str], width: int, height: int) -> Node:
 
 
 _LINE_ROWS = 5
-"""Rows of output and readings below the world: the readings are three lines."""
+"""Rows of the output and the readings side by side below the world: three lines and the edges."""
 _ROOMY = ("code", "chart", "brick")
-"""Panels that get the whole width of a low screen."""
+"""Ids of the panels that get the whole width of a low area."""
 _MAX_YIELDED_ROWS = 2
-"""Maximum number of rows that a panel of `_ROOMY` leaves to those beside the world, if they find no room otherwise."""
+"""Maximum number of rows that the panels of `_ROOMY` give up if the panels beside the world need them."""
 _FAIR_ROWS = 22
-"""From this height of the screen on, a panel of `_ROOMY` keeps its rows, even if the panels above it find too few."""
+"""From this height of an area on, a panel of `_ROOMY` keeps its rows, even if the panels above it get too few."""
 
 
 def build_low(panels: Sequence[str], width: int, height: int) -> Node:

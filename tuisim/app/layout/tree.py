@@ -15,16 +15,16 @@ EDGES = 2
 """Rows or columns that the two edges of a panel take."""
 TIME_BAR_ROWS = 1
 _CELL_ASPECT = 2
-"""Height of a cell, in widths of a cell."""
+"""Height of a cell of the terminal, in widths of a cell."""
 
 
 class Axis(StrEnum):
     """The direction in which the parts of a split are arranged."""
 
     ROWS = "/"
-    """One above the other."""
+    """The parts of the split stand one above the other."""
     COLUMNS = "|"
-    """Side by side."""
+    """The parts of the split stand side by side."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,9 +34,9 @@ class Split:
     axis: Axis
     parts: tuple[Node, ...]
     shares: tuple[float, ...] = ()
-    """Share of the width of each part, for parts side by side; the sum is 1."""
+    """Share of the width, from 0 to 1, of each part, for parts side by side; empty for parts one above the other."""
     least: tuple[int, ...] = ()
-    """Rows that each part gets at least, for parts one above the other; if empty, what its panels need."""
+    """Minimum rows of each part, for parts one above the other; empty for the minimum rows of their panels."""
 
 
 Node = str | Split
@@ -58,10 +58,10 @@ class PanelLayout:
     """A layout of panels: the boxes of those that fit, and the ids of those that do not."""
 
     boxes: dict[str, PanelBox] = field(default_factory=dict)
-    """The boxes by panel."""
+    """The boxes of the panels on the screen, by the id of the panel."""
     left_out: tuple[str, ...] = ()
     wanted: Sequence[str] = ()
-    """Panels that get rows first, the most wanted first; the world is before them."""
+    """Ids of the panels in the order in which they get rows; the world gets its rows before them."""
 
     def rank(self, node: Node) -> int:
         """Return the rank of a node: nodes with lower ranks get their rows first.

@@ -24,11 +24,11 @@ class TerminalSize(StrEnum):
     """The class of a terminal's size, which decides which panels are shown at the start."""
 
     SMALL = "small"
-    """A terminal from 80×24 on."""
+    """A terminal that is smaller than a medium one, such as 80×24."""
     MEDIUM = "medium"
-    """A terminal from 100×30 on."""
+    """A terminal of at least 100 columns and 30 rows that is not large."""
     LARGE = "large"
-    """A terminal from 170×50 on."""
+    """A terminal of at least 170 columns and 50 rows."""
 
 
 class PanelPlace(StrEnum):
@@ -68,21 +68,21 @@ class PanelInfo:
     key: str
     """The panel's key in Textual's notation, such as `f9`; `action.label_of_key` is for people."""
     path: str
-    """Module in this package, and class of the panel; imported when the panel is first shown."""
+    """The panel's module in this package, and after a colon its class; imported when the panel is first shown."""
     place: PanelPlace
     sizes: tuple[TerminalSize, ...]
     """Terminal sizes at which the panel is shown by default."""
     min_rows: int
     fair_rows: int
-    """Height in rows that shows everything, compactly."""
+    """Height in rows with which the panel shows all its content, but compactly."""
     good_rows: int
     """Preferred height in rows."""
     weight: int = 1
-    """Its share of the space among panels that are side by side, or grow. Lines of an example are whole at 200×60."""
+    """Share of the space, relative to panels beside it or that grow with it. Lines of examples are whole at 200×60."""
     grows: bool = False
-    """Whether the panel has a use for more rows than the preferred ones."""
+    """Whether the panel makes use of more rows than `good_rows`."""
     min_cols: int = 24
-    """Minimum width beside another panel; that of *Output* has room for a printed fraction in one line."""
+    """Minimum width in columns beside another panel; that of *Output* has room for a printed fraction in one line."""
 
     def load(self) -> type[Panel]:
         """Import the panel's class and return it."""

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from tuisim.app.snapshot import Snapshot
 
 RIM_16_RGB = (0, 0, 135)
-"""In place of `RIM_RGB` for 8 or 16 colours: they have no grey to spare, and a pattern would outshine the disc."""
+"""Colour of a disc's rim in place of `RIM_RGB` for 8 or 16 colours without grey: a pattern would outshine the disc."""
 
 
 class _DiscPicture(PixelView):
@@ -108,7 +108,7 @@ class Arrays(Widget, can_focus=True):
         self._snapshot: Snapshot | None = None
         self._drawn: object = None
         self._asked = frozenset[int]()
-        """The lines whose thresholds are shown."""
+        """Numbers of the program's lines whose thresholds the discs show."""
 
     def on_resize(self) -> None:
         """Arrange the discs for the new size of the panel."""

@@ -21,13 +21,13 @@ from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.pacer import Throttle
 
 _PERIOD_S = 0.1
-"""The whole display may change at once: a shorter period would saturate a slow link."""
+"""Seconds between two updates of the brick's picture: all of it may change, and a slow link could not carry more."""
 
 TAP_S = 0.25
-"""How long a key press holds its button: terminals do not report when a key is released."""
+"""Seconds for which a key press holds its button: terminals do not report when a key is released."""
 
 SEEN_S = 0.05
-"""Minimum hold in simulated time: programs poll the buttons only now and then."""
+"""Minimum simulated seconds for which a key press holds its button: programs poll the buttons only now and then."""
 
 _HUB_HELP = "← → enter ↑ press · 1…4 force · shift holds · mouse: all"
 _HELP = "arrows enter ⌫ press · shift holds · 1…4 touch · + size"
@@ -61,11 +61,11 @@ class Brick(LinesPanel, can_focus=True):
         self._snapshot: Snapshot | None = None
         self._picture = BrickPicture([], ())
         self._tapped: dict[str, Timer] = {}
-        """Buttons that a key holds for a moment."""
+        """Timers that release the buttons that a key press holds for a moment, by the name of the button."""
         self._latched: set[str] = set()
-        """Buttons that the right mouse button holds until the next click."""
+        """Names of the buttons that the right mouse button has pressed, and that stay pressed until the next click."""
         self._clicked = ""
-        """The button that the mouse holds down."""
+        """Name of the button that the mouse holds down; empty for none."""
         self._throttle = Throttle(self, _PERIOD_S, self._redraw)
 
     def on_focus(self) -> None:

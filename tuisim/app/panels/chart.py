@@ -27,7 +27,7 @@ from tuisim.terminal.picture_mode import is_ascii
 from tuisim.terminal.text_runs import Run, escape_markup
 
 _VALUE_COLS = 40
-"""More than a value with its unit takes."""
+"""Columns for a value with its unit in a copied text: more than any value takes, so that none is left out."""
 
 
 class Chart(LinesPanel, can_focus=True):
@@ -59,7 +59,7 @@ class Chart(LinesPanel, can_focus=True):
 
         time_s: float | None
         sample: str = ""
-        """The name of the sample there that was clicked, empty for none."""
+        """Name of the sample that was clicked at this time; empty if no sample was clicked."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -71,14 +71,14 @@ class Chart(LinesPanel, can_focus=True):
         self._dirty = True
         self._dragging = False
         self._pointed_s: float | None = None
-        """The time below the pointer."""
+        """Time in the chart below the mouse pointer; None if the pointer is elsewhere."""
         self._lag = ""
         self._printed_s = 0.0
-        """When the newest line of the output at a past instant was printed."""
+        """Simulated time at which the newest output line was printed, while a past instant is in view."""
         self._light = find_light(None)
         self._is_at_rest = False
         self._spanned: object = None
-        """The data in which the bands were found last."""
+        """Identifies the data in which bands were last searched for; if it is unchanged, the search is not repeated."""
         self._throttle = Throttle(self, CHART_PERIOD_S, self._draw)
 
     def append(

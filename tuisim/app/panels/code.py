@@ -56,7 +56,7 @@ class FindBar(Horizontal):
         mode: str
         text: str
         by: int
-        """1 the next match, -1 the previous one, 0 the one at or after the cursor."""
+        """Which match to go to: 1 for the next one, -1 for the previous one, 0 for the one at or after the cursor."""
 
     class Closed(Message):
         """Posted when the bar was closed, so that the text gets the focus."""
@@ -65,7 +65,7 @@ class FindBar(Horizontal):
         super().__init__()
         self.mode = FIND
         self.wanted = ""
-        """The last search text."""
+        """The text that the user last searched for."""
         self.display = False
 
     @property
@@ -127,7 +127,7 @@ LIT_GAP_S = 0.1
 _INFO = PANELS["code"]
 NOTHING_OPEN = "No program: {open} opens one, {new} creates one"
 _FRAME = 4
-"""Cells of the frame beside its words."""
+"""Cells of the panel's upper edge that words in it cannot have."""
 
 
 class ProgramCommand(StrEnum):
@@ -186,21 +186,21 @@ class Code(Vertical):
         """The shown text, as it was last set or reported."""
         self._run_lines: list[str] | None = None
         self._mapped: tuple[list[str], LineMap] | None = None
-        """The shown lines when the line map was last computed."""
+        """The shown lines for which the line map was last computed, and that map; None if it must be computed anew."""
         self._tells_run = self._in_run = False
         self._lit_at_s = 0.0
         self._stands = False
-        """Whether the program stood still when a line was last highlighted."""
+        """Whether the program was paused, or the past was in view, when a line was last highlighted."""
         self._line = 0
         self._said = (_INFO.title, "")
         self._error_words = ""
-        """What is wrong in the line that is marked as an error, as far as it is known."""
+        """What is wrong in the line that is marked as an error; empty if it is unknown."""
         self._break_words = ""
         self._pause: PauseView | None = None
         self._tick = 0
         """Tick of the instant in view."""
         self._named_line = 0, 0
-        """A tick, and a line of the run's text that a notice names there; 0 for none."""
+        """A tick, and the line of the run's text to which the cursor moves at that tick; zeros for none."""
 
     def compose(self) -> ComposeResult:
         yield self._area
