@@ -32,7 +32,7 @@ _MIN_LETTERS, _ENDING_LETTERS = 4, 2
 four.
 """
 _PLAIN = ("not", "one")
-"""Words of a question that `compile_pattern` leaves out, as an excerpt should not be chosen because it has them."""
+"""Words of a question that `compile_pattern` leaves out, although the search uses them: they say too little."""
 
 
 @cache

@@ -383,7 +383,7 @@ WITHOUT_EFFECT = (
     "hold_pid/Ki",
     "hold_pid/Kd",
 )
-"""Motor attributes that the browser simulator lacks: a program can write and read them, but they have no effect."""
+"""Motor attributes that a program can write and read back, but which have no effect in the browser simulator."""
 
 
 class BrowserTacho(Tacho):

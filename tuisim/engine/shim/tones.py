@@ -24,7 +24,7 @@ HIGHEST_HZ = 20_000.0
 MOST_REPETITIONS = 10_000
 """Largest number of repetitions of a tone that the command `beep` accepts here, because each becomes a `Tone`."""
 WORDS_PER_MINUTE = 175
-"""Speed of `espeak` if a command names none; the library always names one, usually 130."""
+"""Speed at which `espeak` speaks by default; the library gives it 130 unless the program names another."""
 SLOWEST_WPM, FASTEST_WPM = 80, 450
 """Slowest and fastest speed of `espeak`, in words per minute; other speeds count as the nearer of them."""
 NAMED_TONES = 4

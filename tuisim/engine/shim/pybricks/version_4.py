@@ -217,9 +217,7 @@ class DriveBase(robotics.DriveBase):
     MIN_SIZE_MM = 1
 
     _stops: tuple[int, ...] = ()
-    """The decelerations of straight moves and of turns, in mm/s² and °/s², which `settings` has set; empty if they are
-    those of the firmware.
-    """
+    """The decelerations of straight moves and of turns, in mm/s² and °/s²; empty as long as `settings` has set none."""
 
     def _take_place(self, earlier: robotics.DriveBase) -> None:
         if earlier.has_motor(self.left) or earlier.has_motor(self.right):

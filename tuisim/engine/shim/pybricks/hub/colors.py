@@ -9,8 +9,8 @@ from typing import Any
 
 MAX_GREY_SATURATION = 40
 MAX_DARK_VALUE = 1
-"""Saturation and value, in percent, up to either of which a measurement counts as a grey, if the program distinguishes
-only full colours, black, greys and white.
+"""A measurement with up to `MAX_GREY_SATURATION` percent of saturation, or up to `MAX_DARK_VALUE` percent of value, is
+a grey, if the program distinguishes only ideal colours: full ones, greys, black and white.
 """
 
 
