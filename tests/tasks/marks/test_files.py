@@ -37,6 +37,23 @@ def test_copies_of_hand_ins_are_writable_and_contain_only_files(tmp_path: Path) 
     assert (tmp_path / "copy" / "data" / "log.txt").read_text() == "data/log.txt"
 
 
+def test_a_sparse_files_holes_are_not_copied_as_bytes(tmp_path: Path) -> None:
+    (tmp_path / "class").mkdir()
+    with open(tmp_path / "class" / "data", "wb") as file:
+        file.write(b"first")
+        file.seek(100 << 20)
+        file.write(b"last")
+        file.truncate(200 << 20)
+    copy_tree(tmp_path / "class", tmp_path / "copy")
+    copy = (tmp_path / "copy" / "data").stat()
+    assert copy.st_size == 200 << 20
+    assert copy.st_blocks <= max((tmp_path / "class" / "data").stat().st_blocks, 1 << 10)
+    with open(tmp_path / "copy" / "data", "rb") as file:
+        assert file.read(6) == b"first\0"
+        file.seek(100 << 20)
+        assert file.read(5) == b"last\0"
+
+
 ZIPS = {
     "out of it": ("../eve.py", 0, "leads out of it"),
     "out of it by Windows": ("..\\eve.py", 0, "leads out of it"),

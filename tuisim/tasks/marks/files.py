@@ -1,4 +1,4 @@
-"""Files of students: copies have only regular files; a zip is read as the folder that it is."""
+"""Files of students: copies have only regular files, without their holes; a zip is read as the folder that it is."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import zipfile
 import zlib
 from contextlib import suppress
 from pathlib import Path, PurePosixPath
+from typing import BinaryIO
 
 from tuisim.base.errors import ConfigError, LogError
 from tuisim.base.folders import remove_tree
@@ -66,15 +67,45 @@ def copy_tree(folder: Path, place: Path) -> None:
 def copy_file(source: Path, target: Path) -> None:
     """Copy a regular file; a file that cannot be read is left out.
 
+    Holes in the file, which are zeros that take no space on the disk, stay holes in the copy.
+
     Raises:
         LogError: the copy cannot be written.
     """
     try:
         with open_regular(source) as file, open(target, "wb") as copy:
-            shutil.copyfileobj(file, copy)
+            size = os.fstat(file.fileno()).st_size
+            place = 0
+            while place < size:
+                start, stop = _find_data(file, place, size)
+                file.seek(start)
+                copy.seek(start)
+                while start < stop and (piece := file.read(min(_PIECE, stop - start))):
+                    copy.write(piece)
+                    start += len(piece)
+                place = stop
+            copy.truncate(size)
     except OSError as error:
         if error.errno in _FULL:
             raise LogError(f"its copy cannot be written: {error.strerror}") from error
+
+
+def _find_data(file: BinaryIO, place: int, size: int) -> tuple[int, int]:
+    """Return the start and the end of the next data in a file, in bytes; both are `size` if no data follow.
+
+    The file may have holes before and after the data: zeros that take no space on the disk.
+
+    Args:
+        file: The file.
+        place: The position from which to search.
+        size: The size of the file in bytes.
+    """
+    try:
+        start = os.lseek(file.fileno(), place, os.SEEK_DATA)
+        return start, min(os.lseek(file.fileno(), start, os.SEEK_HOLE), size)
+    except OSError as error:
+        # ENXIO means that no data follow; other errors, that the file system does not support holes.
+        return (size, size) if error.errno == errno.ENXIO else (place, size)
 
 
 def unpack_zip(path: Path, place: Path, max_bytes: int) -> None:
