@@ -28,8 +28,8 @@ both sides.
 """
 
 _MAX_STEP = 1 / 3
-"""A longer plateau may be a step on an edge if it has at most this fraction of the samples between the levels on both
-sides: two equally long plateaus there are levels.
+"""A plateau of more than `EDGE_SAMPLES` may be a step on an edge only if it has at most this fraction of the samples
+between the levels on both sides: two equally long plateaus there are levels.
 """
 
 _MIN_LEVELS = 2 / 3

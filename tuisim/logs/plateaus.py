@@ -59,9 +59,10 @@ from tuisim.logs.stillness import (
 )
 
 MAX_SAMPLES_CUT_ANYWHERE = 4000
-"""Largest number of samples of a log that may be cut at every position; a longer one is cut only where means differ.
+"""Largest number of samples of a log that may be cut at every position.
 
-The time of the search grows with the square of the positions where nothing can be pruned: in a log without steps.
+A longer log is cut only at positions before and after which the means of the samples differ. The time of the search
+grows with the square of the positions where nothing can be pruned: in a log without steps.
 """
 
 _FEW_STEPS = 0.2
