@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 _MIN_SHOWN_SHARE = 1e-9
 """Smallest time range that zooming in can show, as a fraction of the whole time of the log."""
 _SORTED_AT_ONCE = 200_000
-"""Up to this number of values, quantiles take only some hundredths of a second."""
+"""Maximum number of values in a span for which quantiles are computed, which takes some hundredths of a second."""
 
 
 class AnalysisModel:
@@ -54,7 +54,7 @@ class AnalysisModel:
         if self.log.rows and not ticked:
             raise LogError("no numeric column", "there is nothing to draw", file=self.log.title)
         self.selected: str = ticked[0].name if ticked else ""
-        """Variable whose samples the cursor moves along."""
+        """Name of the variable from sample to sample of which the cursor moves; empty for none."""
         self.row: int = 0
         """Index of the table's row at which the cursor is; all panes show it."""
         self.mark_s: float | None = None

@@ -34,7 +34,7 @@ class Pin:
     y_mm: float
     is_good: bool
     text: str
-    """The decision in words, shown while the mouse is over the pin."""
+    """What was decided at the place, in words, shown while the mouse is over the pin."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +88,7 @@ class Picture:
     """The content of the picture, as the `src` of an `img`; empty without a picture."""
     size_px: tuple[int, int] | None = None
     view: Viewport | None = None
-    """The part of the world that the picture shows; for rings and dots only."""
+    """The part of the world that the picture shows; None if the picture can have no rings and dots."""
     rings: tuple[Ring, ...] = ()
     dots: tuple[Dot, ...] = ()
 

@@ -43,7 +43,7 @@ SUFFIXES = (".html", ".htm")
 MAX_BANDS = 100
 """Maximum number of rows in the table of bands; the chart of a variable with more bands shades none."""
 MAX_STATISTICS = 1000
-"""Maximum number of rows of the table of statistics: a program may print a variable for each row."""
+"""Maximum number of rows in the table of statistics, one for each variable; further variables are left out."""
 _WIDTH_PX = 960
 _STRAY = "A stray is a sample far from its band; level and spread leave it out."
 _TRUE_LEVEL = (
@@ -455,6 +455,6 @@ _FACTS: Mapping[str, Callable[[StoredRun], str]] = {
     "user actions": lambda run: str(len(run.actions)) if run.actions else "",
     "tags": lambda run: ", ".join(run.tags),
 }
-"""Facts of a run by their labels. To add a fact, add a line here."""
+"""Functions that return a fact of a run in words, by the label of the fact. To add a fact, add a line here."""
 _CHANGING_FACTS = frozenset({"run", "made"})
 """Labels of the facts that differ even between runs of one program with the same settings and seed."""

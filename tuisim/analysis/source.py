@@ -154,7 +154,7 @@ class OpenedLog:
     runs: tuple[StoredRun, ...] = ()
     """The runs of the log, in the order of its run column; none for a file."""
     part: float = 1.0
-    """Share of the file that has been read, 0 to 1; NaN if the size of the file is unknown."""
+    """Share of the file that has been read, 0 to 1; NaN if the share is unknown."""
     done: bool = True
 
     def find_notes_files(self) -> tuple[Path, ...]:

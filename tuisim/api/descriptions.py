@@ -31,7 +31,7 @@ OPTIONS_BY_NAME: Mapping[str, Option] = {
 
 
 TIME = "time"
-"""The column of the simulated time in seconds."""
+"""Name of the column with the simulated time in seconds."""
 
 
 class Description:

@@ -104,7 +104,7 @@ class Lab:
 
     def _open(self, spec: RunSpec, columns: Sequence[str]) -> None:
         self.columns = read_columns(columns, spec)
-        """The names of the columns that `step` returns."""
+        """Names of the columns whose values `step` returns."""
         self._readers = {
             name: build_reader(name, spec) or (lambda *_: self.time_s) for name in self.columns
         }

@@ -61,7 +61,7 @@ class Action(Generic[Host, Now]):
     shown_key: str = ""
     """Display name of the key for people; empty for the usual display name of `key`."""
     footer_key: str = ""
-    """Display name of the keys in the footer, if one entry stands for two actions; empty for that of `key`."""
+    """Display name of the keys in the footer, such as `[ ]` for the keys of two actions; empty for that of `key`."""
     words: str = ""
     """Further words by which the command palette finds the action."""
     comes_first: bool = False

@@ -92,10 +92,10 @@ if TYPE_CHECKING:
 FIRST_PAINT_DELAY_S = 0.05
 """Seconds for which the app sends no large pictures after the start: the screen is painted several times."""
 MAX_PROBLEMS = 3
-"""Maximum number of errors in `config.toml` that are shown."""
+"""Maximum number of errors in `config.toml` that the app shows; further ones are not shown."""
 _CURSOR_QUERY = "\x1b[6n"
 _REST_GAP_S = 0.25
-"""Seconds between two polls of the run while nothing happens."""
+"""Seconds between two polls of the run while no frames are drawn, because nothing happens."""
 _WARM_UP_AFTER_S = 0.3
 """Seconds after a start until the process that forks runs is started: the first frame needs the processor."""
 _STARTING_S = 0.25
@@ -116,7 +116,7 @@ class AppSettings:
     settings: Settings | None = None
     """The options that `spec` was built from; None if they are not known."""
     world_file: Path | None = None
-    """The world file that was opened, to be watched and saved again."""
+    """The world file that was opened; the app watches it, and saves to it. None without one."""
     program: Program | None = None
     """The program to open; None to open no program."""
     goals: GoalsFile | None = None
@@ -130,9 +130,9 @@ class AppSettings:
     replay: StoredRun | None = None
     """A stored run to show; None for none. `spec` and `program` are then those of the stored run."""
     panels_on: frozenset[str] = field(default_factory=frozenset)
-    """Ids of panels shown whatever the size of the terminal."""
+    """Ids of the panels that are shown at the start, whatever the size of the terminal."""
     panels_off: frozenset[str] = field(default_factory=frozenset)
-    """Ids of panels hidden whatever the size of the terminal."""
+    """Ids of the panels that are hidden at the start, whatever the size of the terminal."""
     autorun: bool = False
     """Whether to run the program as soon as the mat is ready."""
     quiet: bool = False

@@ -34,7 +34,7 @@ _WORLD_FIELDS = (
     "flags",
     "actions",
 )
-"""Fields of a tick record that stay the same when lines are inserted into the program."""
+"""Fields of a tick record that show whether the worlds of two runs differ; inserted lines do not change them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,9 +45,9 @@ class Branch:
     tick: int
     program: Program
     then: protocol.Message | None
-    """The user action at the instant of the branch; None for none."""
+    """The user action that the branch adds at the instant at which it departs from the former run; None for none."""
     goes_on: bool
-    """Whether the branch continues when it reaches the instant at which it begins; else it pauses there."""
+    """Whether the branch continues at the instant up to which it repeats the former run; else it pauses there."""
 
     @property
     def time_s(self) -> float:

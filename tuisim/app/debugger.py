@@ -79,12 +79,10 @@ class DebugController:
         self._is_stepping = False
         """Whether a step of the live run has been sent and has not ended yet."""
         self._steps: deque[Message | int] = deque()
-        """The steps that wait for the end of an earlier one, also in the past; a number stands for steps back by so
-        many lines."""
+        """Steps that wait for the end of an earlier step; a number stands for that many lines back into the past."""
         self._panels_opened = False
         self._breakpoints_unsent = False
-        """Whether the live run has not yet received the breakpoints, because a branch is still on the way to its
-        instant."""
+        """Whether the live run lacks the breakpoints; it gets them at its first message, a branch at its instant."""
 
     # The following methods set breakpoints and watches.
 

@@ -18,9 +18,9 @@ class LabHost(ActionHost, TerminalApp):
     """The interface of the app for its parts: notices, dialogs, timers, and methods that redraw or start a run."""
 
     undo: Callable[[], None] | None = None
-    """Undoes the last change; None if there is nothing to undo."""
+    """Function that undoes the last change; None if there is nothing to undo."""
     has_greeted = False
-    """Whether the welcome was shown, or will not be; until then, keys wait."""
+    """Whether the welcome was shown, or need not be; while it may still appear, keys wait."""
 
     def action_act(self, name: str) -> None:
         self.notices.release()

@@ -53,9 +53,9 @@ _STACKED_ROWS = 18
 
 
 _READINGS = ("instrumentation", "arrays", "positioning")
-"""The panels with numbers of an instant, which is the same in all of them and in the time bar."""
+"""Ids of the panels with values at the instant in view; they are updated together, so that they agree."""
 _READINGS_PERIOD_S = 0.1
-"""Seconds between two updates of the readings: values that change faster cannot be read."""
+"""Seconds between two updates of the panels in `_READINGS`: values that change faster cannot be read."""
 _ARRAYS_PERIOD_S = 0.25
 """Seconds between two updates of the readings while the sensor arrays are shown, which a slow link can carry."""
 
@@ -94,7 +94,7 @@ class PanelArea(Container):
     def __init__(self, on: frozenset[str], off: frozenset[str]) -> None:
         super().__init__(id="panel-area")
         self.panels: dict[str, Widget] = {}
-        """The panels that have been mounted, by id; a panel is mounted when it is first shown."""
+        """The panels that have been mounted, by id; a panel that was never shown need not be among them."""
         self.arrangement = PanelLayout()
         """The boxes of the panels on the screen."""
         switched = {**dict.fromkeys(on, True), **dict.fromkeys(off, False)}
@@ -112,7 +112,7 @@ class PanelArea(Container):
         self.front = "world"
         """Id of the panel that was shown or focused last; where only one panel has room, it is this one."""
         self._is_loaded = False
-        """Whether the stored arrangement has been loaded."""
+        """Whether the user's stored arrangement of panels has been loaded."""
         self.is_stacked = False
         """Whether two panels fill the area, one above the other, such as the code above a lesson."""
         self.is_beside = False

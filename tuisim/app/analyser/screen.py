@@ -78,11 +78,11 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         self.searched = ""
         """The text that the user last searched for; empty for none."""
         self.job: TableTask | None = None
-        """The current background job."""
+        """The background job that works on the table now; None for none."""
         self._reading = False
         self._began_s = self._next_poll_s = 0.0
         self._stamp: object = None
-        """Length of the log when it was last read."""
+        """The result of `OpenedLog.stamp` when the log was last read; if it differs now, the log has grown."""
         self._said: tuple[str, ...] = ()
         """Notes about reading the log that the app has already shown, so that it shows none twice."""
         self.title_line = LinesView()

@@ -170,7 +170,7 @@ class WorldPane(Vertical):
     def __init__(self) -> None:
         super().__init__()
         self.is_on = True
-        """Whether the user wants to see the world; it is shown if the log has poses."""
+        """Whether the user wants to see the world; even then it is hidden if the log has no positions of the robot."""
         # The robot is shown where it was; the mouse cannot move it.
         self._world = WorldView()
         self._world.disabled = True

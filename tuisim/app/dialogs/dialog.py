@@ -71,7 +71,7 @@ MOVE_KEYS = [
 
 _BETWEEN = " · "
 _HINT_EDGES = 6
-"""Cells of a dialog's bottom border that are left free of hints: its corners, and the space around the hints."""
+"""Cells of a dialog's lower border that hints in it cannot have."""
 _TRANSPARENT = Color(0, 0, 0, 0)
 
 

@@ -76,7 +76,7 @@ class _TextList(_List[None], Generic[Entry]):
         self._entries: list[Entry] = list(entries)
         self._changed = changed
         self._editing: int | None = None
-        """Index of the entry that the field edits; None for a new one."""
+        """Index of the entry whose text the field edits; None if the field is for a new entry."""
 
     def compose_content(self) -> ComposeResult:
         yield OptionList(markup=False)

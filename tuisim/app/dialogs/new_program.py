@@ -56,7 +56,7 @@ class SkeletonSensor(NamedTuple):
     hub_made: str
     """Expression that makes the object in Pybricks on a PrimeHub, with class and port."""
     speeds: tuple[int, int] = (50, 50)
-    """Speeds of the left and the right wheel in percent."""
+    """Speeds of the left and the right wheel in percent of the greatest speed."""
     turn_rate_dps: int = 0
 
 
@@ -217,7 +217,7 @@ class NewProgramDialog(Dialog[str]):
         )
         self._current = current
         self._typed = ""
-        """Letters typed in the list with the focus, to find an entry."""
+        """Letters that the user has typed while a list had the focus, to find an entry of that list."""
 
     def compose_content(self) -> ComposeResult:
         with Horizontal():

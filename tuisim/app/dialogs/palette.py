@@ -112,7 +112,7 @@ class SearchList(Dialog[str]):
 
     HINT: str = "type to search · ↑ ↓ and Enter · Escape closes"
     NOTHING: str = "Nothing found"
-    """The message in place of an empty list."""
+    """The message in place of the list if no entry matches the typed text."""
     BINDINGS: ClassVar[list[BindingType]] = [*MOVE_KEYS]
 
     def __init__(self, entries: Sequence[Entry], current: str = "") -> None:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from tuisim.app.setup.next_run import NextRun
 
 PROGRAM_ROBOT = "*program"
-"""What the dialog returns for the robot that was built for the program; no name or path of a robot."""
+"""What the dialog returns for the robot that was built from the program's text; it is no name or path."""
 
 _LABEL, _VALUE = Style(color=palette.SOFT), Style(color=palette.WHITE)
 _OTHER_ROWS = 12

@@ -77,7 +77,7 @@ def _format_date(run: RunInfo) -> str:
 
 
 _COLUMNS = {"run": 5, "when": 11, "program": 12, "mat": 10, "end": 10, "s": 6, "samples": 7}
-"""Columns of the list and their widths in cells; a note may follow them."""
+"""Columns of the list of runs with their widths in cells; in a wide terminal, a note follows the last column."""
 _MORE_CELLS = {"program": 10, "mat": 5}
 """By how many cells a column of the list is wider if the terminal has at least `_WIDE_COLUMNS` columns."""
 _WIDE_COLUMNS = 120

@@ -127,7 +127,7 @@ class CodeArea(TextArea):
         self.unknown_word: str | None = None
         """The word at the cursor, if a look-up has found no name that begins with it; else None."""
         self.path = ""
-        """Path of the program's file, or its name."""
+        """Path of the program's file; the program's name if it has no file."""
         self.candidates = CandidateList()
         """The list of names that may complete the word at the cursor; the editor passes keys on to it."""
         self._unknown: tuple[UnknownName, ...] = ()

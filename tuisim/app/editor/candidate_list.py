@@ -141,7 +141,7 @@ class CandidateList(Widget):
         self._word = ""
         self._opened_s = 0.0
         self.is_offered = False
-        """Whether the list opened by itself: then only enter, tab and a click write a name into the text."""
+        """Whether the list opened by itself; then only Enter, Tab and a click write a name into the text."""
         self.begin = (0, 0)
         """Row and column at which the word that is being completed begins."""
 

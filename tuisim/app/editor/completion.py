@@ -42,9 +42,9 @@ _PYBRICKS = "tuisim.engine.shim.pybricks."
 _SIMULATED_NAMES = frozenset(
     {"KIND", "STOPS", "SETTINGS_WHILE_ACTIVE", "brick", "device_port", "port", "sign"}
 )
-"""Names that only the simulated classes of Pybricks have."""
+"""Names of Pybricks classes that only the simulator has; a list of candidates leaves them out."""
 _GENERAL = frozenset({"ev3dev2", "ev3dev2.sensor"})
-"""Modules of the classes that all devices of `ev3dev2` share, which few programs use."""
+"""Modules of the classes that all devices of `ev3dev2` share; few programs use their names, which come last."""
 _COURSE_ATTRIBUTES = frozenset({"reflected_light_intensity_pc", "full_reflected_light_intensity"})
 """Attributes that every colour sensor has while a program runs, whatever class or factory made it."""
 _LIBRARIES = ("ev3dev2", "tuisim.engine.shim.names.course", "time")
@@ -67,7 +67,7 @@ _HELP = {
 """Help for names whose docstrings are true only of a real brick, by name; it is shown in place of the docstring."""
 _EXTENSIONS = [path for path in sys.path if path.endswith("lib-dynload")]
 _PACKAGE_FOLDERS = frozenset({"site-packages", "dist-packages"})
-"""Names of folders into which packages are installed."""
+"""Names of the folders into which Python packages are installed."""
 _WARM_UP_PLACE = "colorLeft.r", "", 0, len("colorLeft.r")
 """Arguments of a first call of `find_candidates`, which warms up Jedi: attributes of an object of the prelude."""
 _asking = Lock()

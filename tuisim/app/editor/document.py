@@ -72,7 +72,7 @@ class Document:
         self._error_line = 0
         """Line of the current run's text at which it ended with an error; 0 for none, or once the text has changed."""
         self._error_words = ""
-        """The error at that line in words; empty if it is unknown."""
+        """The error at `_error_line` in words; empty if it is unknown."""
         self._ran: tuple[Recording, str] | None = None
         """The recording in view, and the text that it ran, as it was in the editor; None without a recording."""
 

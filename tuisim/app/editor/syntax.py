@@ -12,7 +12,7 @@ import re
 from collections.abc import Sequence
 
 Span = tuple[int, int, str]
-"""Start and end in characters, and one of `KINDS`."""
+"""First column of a coloured part of a line, the column after its last one, and its kind, one of `KINDS`."""
 
 KINDS = ("keyword", "string", "comment", "number", "name")
 

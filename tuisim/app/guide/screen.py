@@ -43,7 +43,7 @@ class Topic:
     """What the guide shows about a panel: a page, and the groups of keys that concern the panel."""
 
     page: str = ""
-    """Name of the page; empty for the page with every key."""
+    """Name of the guide's page; empty for the page with every key."""
     groups: tuple[str, ...] = ()
     """Names of the groups of keys that stand above the page; on the page with every key, they are the first groups."""
 
@@ -169,7 +169,7 @@ class _Page(VerticalScroll):
         self._passage = ""
         """The passage of the page that a search has found, in Markdown; empty for none."""
         self.drawn_columns = 0
-        """The number of columns for which the page was drawn; 0 if it was not visible."""
+        """Width in columns for which the page was last drawn; 0 if the page was not visible."""
         self._text = Static(markup=False)
 
     def compose(self) -> ComposeResult:

@@ -184,7 +184,7 @@ def choose_panels(
 
 
 _READ_FIRST = ("code", "chart", "arrays")
-"""Panels that fill a tall terminal before those that set up a run."""
+"""Ids of the panels to read; in a tall area they come before the panels with which the user sets up a run."""
 
 
 def _gives_way(panel: str, switched: Mapping[str, bool], width: int) -> bool:

@@ -28,26 +28,26 @@ LOW_COLS, LOW_ROWS = 112, 33
 """In a terminal with fewer columns and fewer rows than these, panels share the screen as in one of 80×24."""
 MIN_LARGE_COLS, _MIN_LARGE_ROWS = 170, 50
 _BOARD_COLS, _BOARD_ROWS = 100, 30
-"""From this size of terminal on, world, readings, sensor arrays and chart are shown at once."""
+"""A terminal of at least this size is medium: it shows world, readings, sensor arrays and chart at once."""
 DISCS_COLS = 42
 """Columns of the side column in which two sensor discs fit side by side."""
 _READINGS_COLS, _TEXT_COLS = 48, 32
 """Columns that the readings need for three lines, and columns that are left to the output beside the readings."""
 _MAX_SIDE_COLS = 46
 _CODE_COLS = 64
-"""Columns in which most lines of code are whole, with the values beside them."""
+"""If the strip has less than this for each panel, code stands above the others, so that most lines are whole."""
 _CHART_COLS = 80
 _LEAST_CODE_COLS = 46
-"""A chart in the strip of a wide screen gets `_CHART_COLS` columns, if at least `_LEAST_CODE_COLS` are left to the
+"""A chart beside code in the bottom strip gets `_CHART_COLS` columns if at least `_LEAST_CODE_COLS` are left to the
 code."""
 _LINE_COLS = 80
 _LEAST_CHART_COLS = 64
-"""Lines of an example are whole in `_LINE_COLS` columns; a chart beside such code, above the output, gets at least
-`_LEAST_CHART_COLS`."""
+"""Code gets `_LINE_COLS` columns, in which lines of an example are whole, if `_LEAST_CHART_COLS` are left to a chart
+beside it with the output below."""
 _STACKED_ROWS = 14, 7
 """Minimum rows of a chart beside the code, and of the output below that chart."""
 MAX_TAKEN_ROWS = 7
-"""Maximum number of rows that a strip with chart and output takes from the world."""
+"""Maximum number of rows that a strip with code, chart and output takes from the world above it."""
 _ERROR_ROWS = 8
 """Minimum rows of each panel below code in the whole width, so that *Output* shows an error with its traceback."""
 COLUMN_COLS = 40

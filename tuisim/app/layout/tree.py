@@ -12,7 +12,7 @@ from tuisim.base.data_class import dataclass
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 
 EDGES = 2
-"""Rows or columns that the two edges of a panel take."""
+"""Number of rows, and also of columns, that the two opposite edges of a panel take."""
 TIME_BAR_ROWS = 1
 _CELL_ASPECT = 2
 """Height of a cell of the terminal, in widths of a cell."""

@@ -36,7 +36,7 @@ class PanelPlace(StrEnum):
 
     MAIN = "main"
     BOTTOM = "bottom"
-    """The strip below the main area."""
+    """The strip below the main area of the screen."""
     SIDE = "side"
     """The column beside the main area and the strip."""
 
@@ -66,7 +66,7 @@ class PanelInfo:
     id: str
     title: str
     key: str
-    """The panel's key in Textual's notation, such as `f9`; `action.label_of_key` is for people."""
+    """The panel's key in Textual's notation, such as `f9`; `action.label_of_key` returns its display name."""
     path: str
     """The panel's module in this package, and after a colon its class; imported when the panel is first shown."""
     place: PanelPlace

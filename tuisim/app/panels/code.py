@@ -122,7 +122,7 @@ class FindBar(Horizontal):
 
 
 LIT_GAP_S = 0.1
-"""Minimum time between two moves of the highlight while the program runs: more often would only flicker."""
+"""Minimum seconds between two moves of the highlighted line while the program runs: faster ones only flicker."""
 
 _INFO = PANELS["code"]
 NOTHING_OPEN = "No program: {open} opens one, {new} creates one"
@@ -138,7 +138,7 @@ class ProgramCommand(StrEnum):
     NEW = "new"
     OPEN = "open"
     NONE = "none"
-    """Asks the app to say that there is no program to edit."""
+    """The key had no effect, because no program is open to be edited: the app says so."""
 
 
 class Code(Vertical):
@@ -183,7 +183,7 @@ class Code(Vertical):
         self._bar = FindBar()
         self._key: str | None = None
         self._shown = ""
-        """The shown text, as it was last set or reported."""
+        """The program's text in the panel, as the app last set it or the panel last reported it."""
         self._run_lines: list[str] | None = None
         self._mapped: tuple[list[str], LineMap] | None = None
         """The shown lines for which the line map was last computed, and that map; None if it must be computed anew."""
