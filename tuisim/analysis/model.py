@@ -54,7 +54,7 @@ class AnalysisModel:
         if self.log.rows and not ticked:
             raise LogError("no numeric column", "there is nothing to draw", file=self.log.title)
         self.selected: str = ticked[0].name if ticked else ""
-        """Name of the variable from sample to sample of which the cursor moves; empty for none."""
+        """Name of the selected variable, from sample to sample of which keys move the cursor; empty for none."""
         self.row: int = 0
         """Index of the table's row at which the cursor is; all panes show it."""
         self.mark_s: float | None = None

@@ -432,7 +432,7 @@ def _list_further_settings(spec: RunSpec) -> str:
 
 
 _PREDEFINED = {"none": "none", "imports": "the imports", "preloaded": "the imports and the parts"}
-"""What a program with a prelude need not define, in words, by the name of the prelude."""
+"""What a prelude defines for the program, in words, by the name of the prelude."""
 _FACTS: Mapping[str, Callable[[StoredRun], str]] = {
     "run": lambda run: f"{run.number or ''} {run.id}".strip(),
     "made": lambda run: run.created[:19].replace("T", " ") + " UTC",

@@ -57,7 +57,7 @@ _READINGS = ("instrumentation", "arrays", "positioning")
 _READINGS_PERIOD_S = 0.1
 """Seconds between two updates of the panels in `_READINGS`: values that change faster cannot be read."""
 _ARRAYS_PERIOD_S = 0.25
-"""Seconds between two updates of the readings while the sensor arrays are shown, which a slow link can carry."""
+"""The same while the sensor arrays are shown, whose pixels may all change: a slow link carries no more."""
 
 
 class _Mounted(Generic[PanelWidget]):

@@ -41,7 +41,7 @@ _UNSHOWN = re.compile(r"[\x00-\x08\x0a-\x1f\x7f-\x9f\uf700-\uf707]")
 
 VALUE_GAP = 2
 MIN_VALUE_CELLS = 10
-"""Cells for values behind a line if they need more than half of the width; `VALUE_GAP` cells are before values."""
+"""`VALUE_GAP` cells separate a line from its values; values wider than half of the text get at least this."""
 _CURSOR_COLS = 3
 """If so many cells from the cursor on are visible with the text at its left edge, the text is scrolled there."""
 

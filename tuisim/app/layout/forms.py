@@ -23,7 +23,7 @@ MIN_STRIP_COLS = 36
 _SINGLE_COLS, _SINGLE_ROWS = 60, 15
 """In a lower area, or in a narrower one of fewer than `_TALL_ROWS` rows, one panel is shown at a time."""
 _TALL_ROWS = 30
-"""From this number of rows on, a narrow area shows panels below each other, as on a phone with large text."""
+"""A narrow area of at least so many rows shows panels below each other, as on a phone with large text."""
 LOW_COLS, LOW_ROWS = 112, 33
 """In a terminal with fewer columns and fewer rows than these, panels share the screen as in one of 80×24."""
 MIN_LARGE_COLS, _MIN_LARGE_ROWS = 170, 50
@@ -232,7 +232,7 @@ _CHART_ROWS = 11
 _CHART_SHARE = 5 / 8
 """Share of the strip's width, from 0 to 1, that the chart gets if only the output is beside it."""
 _MAX_EMPTY_ROWS = 3
-"""Maximum number of rows by which the world is higher than its mat needs, so that the readings beside it fit."""
+"""Maximum number of rows by which the world may exceed what its mat needs, so that the readings beside it fit."""
 
 
 def build_board(panels: Sequence[str], width: int, height: int) -> Node:

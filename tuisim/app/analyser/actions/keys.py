@@ -23,7 +23,7 @@ APP = "App"
 
 
 LogAction = Action[LogScreen, int | None]
-"""An action of the log's screen; its availability depends on the number of rows, None if no log is open."""
+"""An action of the log's screen; it depends on the number of rows, None while the log is being opened."""
 
 
 def _log(rows: int | None) -> str:
