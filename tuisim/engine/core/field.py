@@ -62,7 +62,7 @@ class Field:
     width_px: int
     height_px: int
     pixels: memoryview
-    """Rows from the top, three bytes per pixel."""
+    """The mat's image: rows from the top, three bytes (red, green, blue) per pixel."""
     sums: Mapping[int, memoryview]
     """By diameter d: sums of red, green and blue (unsigned, 32 bits) of the disc whose box has its
     corner at (col - d, row - d); shape (height + d, width + d, 3), flat."""

@@ -73,7 +73,7 @@ def compute_stall_ticks(tick_hz: int) -> int:
 
 
 WEIGHT_DPS2 = 5000.0
-"""Change of speed per second, times the robot's weight."""
+"""Acceleration of a motor in degrees per second squared, multiplied by the robot's weight."""
 
 
 def compute_weight_step(spec: RunSpec) -> float:
@@ -182,12 +182,13 @@ class Motion:
         self.actions = 0
         """Number of user actions applied."""
         self.changed = False
-        """Set when a motor ends a move by itself; the caller clears it."""
+        """Whether a motor has ended a move, or a driver noticed a change of state, since the caller last cleared this
+        flag."""
         self._left_dps = self._right_dps = 0.0
         self._driven: tuple[SimulatedMotor, ...] = ()
         """The motors with a driver, which notices changes of their states late."""
         self.changed_ns = 0
-        """When a driver noticed the last such change, in ns."""
+        """Time in ns at which a driver last noticed that its motor's state had changed."""
         self._begin(spec, sink)
 
     def _build_solids(self, spec: RunSpec) -> None:

@@ -41,7 +41,7 @@ class Motor(Protocol):
     """
 
     position_deg: float
-    """Encoder position."""
+    """Position of the motor's encoder in degrees."""
     blocked_ticks: int
     """Number of consecutive ticks in which an obstacle or wall has blocked the wheel; 0 if it is free."""
 

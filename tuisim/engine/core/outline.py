@@ -17,7 +17,7 @@ SENSOR_HOUSING_MM = 15.0
 """A sensor's housing extends this far from its centre, to every side."""
 
 Point = tuple[float, float]
-"""x and y in mm."""
+"""A point: x and y in mm."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,11 +27,11 @@ class RobotOutline:
     half_width_mm: float
     """How far the body extends to either side: to the outer edge of its wheels."""
     back_mm: float
-    """How far it extends behind the axle, as a negative y."""
+    """How far the body extends behind the axle, as a negative y."""
     front_mm: float
-    """How far it extends forward of the axle: to the front of its sensors."""
+    """How far the body extends forward of the axle: to the front of its sensors."""
     wheel_width_mm: float
-    """The wheels are at both sides, inside the body."""
+    """Width of each wheel; the wheels are at both sides, inside the body."""
     wheel_radius_mm: float
     has_wheels: bool
     color_sensors_mm: tuple[tuple[float, float, float], ...]

@@ -98,7 +98,7 @@ class MarkedField(Field):
 
 
 _Point = tuple[float, float]
-"""x and y in mm."""
+"""A point of the field: x and y in mm."""
 
 
 class PenMarks:

@@ -10,23 +10,26 @@ CLOCK_HZ = 24_000_000
 HALF_CLOCK_HZ = CLOCK_HZ // 2
 TICKS_PER_NS = CLOCK_HZ / 1_000_000_000
 MIN_SPAN = CLOCK_HZ * 20 // 1000
-"""A speed is measured over at least this time, in ticks of that clock."""
+"""The driver measures a speed over at least 20 ms; this is that time in ticks of the clock of the time stamps."""
 LOOK = CLOCK_HZ // 1000
-"""The driver checks once in this time whether the counter stands..."""
+"""Interval at which the driver checks whether the count stands still, in ticks of the clock: 1 ms."""
 IDLE_LOOKS = 51
-"""...and notes it at the first check more than 50 ms after the last note."""
+"""While the count stands still, the driver notes this at every 51st check: the first one more than 50 ms after its last
+note."""
 MIN_IDLE = 50.0 * LOOK
 LAST_NOTE = -43 * LOOK
-"""Time of the last note before the run that the counter stands: the driver has been at work for 400 ms."""
+"""Time of the driver's last note before the run that the count stands still, in ticks of the clock from the run's
+start."""
 STRIDE = 4
-"""The driver looks back by this many changes, or twice, three times … as many."""
+"""To measure a speed, the driver looks back by this many changes of the count, or by a multiple of this number."""
 MAX_DEPTH = 16 * STRIDE
 KEPT_SPAN = CLOCK_HZ * 50 // 1000
-"""A speed is measured over fewer counts than those of this time, in ticks of the clock..."""
+"""After an even motion the counter records the changes of this last time, in ticks of the clock: no speed needs older
+ones."""
 KEPT_COUNTS = 3 * STRIDE
-"""...or than these."""
+"""After an even motion the counter records at least this many changes of the count, however slow the axle is."""
 CAPACITY = 2 * MAX_DEPTH
-"""Number of the last changes that are remembered."""
+"""Number of the last changes of the count that the counter keeps when it removes the older ones."""
 MAX_CHANGES = 2 * CAPACITY
 FIRST_NOTE = LAST_NOTE - (CAPACITY - 1) * IDLE_LOOKS * LOOK
 
@@ -42,11 +45,11 @@ class Counter:
     def __init__(self) -> None:
         self._times: list[int] = [*range(FIRST_NOTE, LAST_NOTE + 1, IDLE_LOOKS * LOOK)]
         self._straight = 0
-        """Number of the last changes that went in one direction, negative if backwards."""
+        """Number of the last changes of the count that all went in one direction; negative if the count fell."""
         self._earlier = [0] * CAPACITY
-        """The count after each change before those; the counts after those follow from the newest one."""
+        """The count after each change before the last `_straight` ones, whose counts follow from the present count."""
         self._depth = STRIDE
-        """Number of changes over which the driver measured the last speed."""
+        """Number of changes of the count over which the driver measured the last speed."""
         self._speed_dps: int | None = 0
         """The speed measured at the last change; None if it must be measured again."""
         self.count = 0

@@ -8,15 +8,17 @@ from tuisim.engine.core.noise import draw_numbers
 JIFFY_US = 10_000
 NS_PER_US = 1000
 STEP_US = 2000
-"""The period of the driver's control."""
+"""Period of the control in a motor's driver, in microseconds."""
 LOOK_JIFFIES = 6
 """Interval in jiffies at which a driver checks whether its state has changed."""
 FIRST_JIFFIES = 4096
-"""Number of jiffies at one of which a run begins; the seed draws it."""
+"""The kernel's count of jiffies at the start of a run is drawn, with the run's seed, from 0 up to below this number."""
 LEVEL_JIFFIES = 63
-"""The finest wheel of the timers holds this many jiffies."""
+"""The kernel's timers that wait for at most this many jiffies fire at an exact jiffy; those for longer fire at coarser
+times."""
 COARSER = 8
-"""Each further wheel reaches this many times as far, and is as many times coarser."""
+"""A timer that waits longer than a limit is this many times coarser, up to a next limit that is this many times as
+long."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,11 +26,11 @@ class Jiffies:
     """The clock of the kernel in a run: it counts jiffies of 10 ms, and was already running before the run."""
 
     first: int = 0
-    """Jiffies at the start of the run."""
+    """How many jiffies the kernel has counted when the run begins."""
     phase_us: int = 0
-    """How long the first jiffy has lasted at the start of the run."""
+    """How long the current jiffy has already lasted when the run begins, in microseconds."""
     first_look: int = 2
-    """Number of jiffies until the drivers look for the first time whether a state has changed."""
+    """Number of jiffies from the start of the run to the drivers' first check whether a motor's state has changed."""
 
     def count(self, time_ns: int) -> int:
         """Return how many jiffies the kernel has counted at a time in ns from the start of the run."""

@@ -24,11 +24,11 @@ from tuisim.engine.core.motor_columns import (
 
 NEVER_NS = 1 << 62
 RAMP_JIFFIES = 10
-"""About the time between two changes of the setpoint by a ramp."""
+"""Number of jiffies for which a ramp waits between two changes of the setpoint, approximately."""
 LOOK_NS = LOOK_JIFFIES * JIFFY_US * NS_PER_US
-"""Interval of the driver's checks, at which it notices a changed state."""
+"""Interval in ns at which the driver checks whether the motor's state has changed."""
 RAMP_LEAD_JIFFIES = 5
-"""How long before its command a ramp begins."""
+"""A ramp is computed as if it had begun this number of jiffies before its command."""
 
 
 class Command(StrEnum):

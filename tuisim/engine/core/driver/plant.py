@@ -12,7 +12,7 @@ from tuisim.base.data_class import dataclass
 
 NS_PER_S = 1_000_000_000
 STEP_NS = 2_000_000
-"""The period of the driver's control."""
+"""Period of the control in a motor's driver, in ns."""
 STEP_S = STEP_NS / NS_PER_S
 
 
@@ -27,9 +27,9 @@ class PlantSpec:
     inertia_kg_m2: float
     damping_nm_s: float
     friction_nm: float
-    """Friction of the turning axle."""
+    """Torque of the friction that slows a turning axle, in Nm."""
     breakaway_nm: float
-    """Torque that an axle at rest withstands."""
+    """Largest torque, in Nm, at which an axle at rest does not yet turn."""
 
     def add_load(self, inertia_kg_m2: float, friction_nm: float) -> PlantSpec:
         """Return the constants of the motor with a further load."""
@@ -72,12 +72,12 @@ class Circuit:
     dps_per_percent: float
     """Steady speed per percent of duty, without friction; 0 while it coasts."""
     friction_dps: float
-    """How much friction lowers the steady speed."""
+    """How much friction lowers the steady speed, in degrees per second."""
     breakaway_dps: float
     """An axle at rest does not start if its steady speed without friction would be lower than this."""
     time_constant_s: float
     step_decay: float
-    """Share of a difference to the steady speed that remains after one step of the control."""
+    """Share of the difference between the speed and the steady speed that remains after one step of the control."""
 
 
 def build_circuit(plant: PlantSpec, battery_v: float | None) -> Circuit:
@@ -121,7 +121,7 @@ class Axle:
         self._powered, self._coasting = build_circuit(plant, battery_v), build_circuit(plant, None)
         self.circuit = self._coasting
         self.goal_dps = 0.0
-        """The speed that the duty leads to, without friction."""
+        """The steady speed to which the duty would lead without friction, in degrees per second."""
         self.angle_deg = 0.125
         """Angle from the counter's zero; the axle begins in the middle of a count."""
         self.speed_dps = 0.0

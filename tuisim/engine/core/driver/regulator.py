@@ -20,7 +20,7 @@ STEP_TICKS = STEP_NS * TICKS_PER_NS
 STALL_NS = 100_000_000
 """A running motor whose speed reads 0 for longer than this is stalled."""
 COUNTED_DEG = 2
-"""A position differs from the axle's angle by less than this."""
+"""The position that the driver reads differs from the axle's true angle by less than this."""
 
 
 class StopAction(StrEnum):
@@ -93,21 +93,21 @@ class MotorDriver:
         """Time up to which the axle has been moved."""
         self._raw = self._offset = 0
         self.position = self.speed_dps = 0
-        """Position and speed, as the last step of the control read them."""
+        """Position in degrees and speed in degrees per second, as the last step of the control read them."""
         self.duty = 0
         """The duty that was set last, in percent; the bridge may still have an earlier one."""
         self.target = 0
-        """The position at which the last move to a position ends."""
+        """The position in degrees at which the last move to a position ends."""
         self._arrival_action: StopAction | None = None
-        """What happens at the target; None if no move to a position is active."""
+        """The action with which the motor stops at `target`; None if no move to a position is active."""
         self._is_regulated = False
         """Whether only the speed control is active, and perhaps a target at which the move ends."""
         self._roll: Roll | None = None
-        """How the axle rolls without any control; None if it does not."""
+        """The motion of an axle that rolls without any control; None if the axle does not roll so."""
         self.ramp_down_ms = 0
         self.is_running = self.is_lowering = self.is_stalled = False
         self._still_ns: int | None = None
-        """Time in ns since which the speed of the running motor reads 0; None if it does not."""
+        """Time in ns since which the speed of the running motor reads 0; None if its speed does not read 0."""
 
     @property
     def lowering_s(self) -> float:

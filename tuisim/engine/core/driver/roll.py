@@ -62,15 +62,15 @@ class Roll:
         self._sign = copysign(1.0, axle.speed_dps)
         self._constant_s = axle.circuit.time_constant_s
         self._goal_dps = axle.goal_dps - self._sign * axle.circuit.friction_dps
-        """The speed that the axle approaches."""
+        """The speed that the rolling axle approaches, in degrees per second."""
         self._depth = STRIDE
-        """Over how many counts the driver measured the last speed."""
+        """Number of changes of the count over which the driver measured the last speed."""
         self._now = begin_ns * TICKS_PER_NS
         self.count = counter.count
         self.time_ns = begin_ns - 1
-        """Time of the last step to which the axle has been turned."""
+        """Time in ns of the last step of the control up to which the axle has been turned."""
         self.end_ns = self._find_end_ns()
-        """The last step of the control in which the axle is quick enough."""
+        """Time in ns of the last step of the control in which the axle is not slower than `MIN_ROLL_DPS`."""
 
     def _find_end_ns(self) -> int:
         goal_dps = self._sign * self._goal_dps

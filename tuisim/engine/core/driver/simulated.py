@@ -35,13 +35,13 @@ ROLLING_SHARE = 0.046
 """Friction of a wheel and a castor at the axle, as a share of the weight on the wheel times its radius: an estimate."""
 GRAVITY_M_S2 = 9.81
 EVEN_TICKS = 12
-"""A motor whose speed has been right for so many ticks runs on evenly..."""
+"""A motor whose speed has been right for this many ticks then runs on evenly, without single steps of the control."""
 MAX_ERROR_DPS = 2
 MIN_CRUISE_DPS = 80
 CUT_OFF_DPS = 0.5
-"""...this much faster than its measured speed, which is rounded down..."""
+"""A motor that runs evenly turns this much faster than its measured speed, which is rounded down."""
 MARGIN_S = 0.03
-"""...until this long before it arrives at a target or a stop."""
+"""The even motion of a motor ends this long before the motor arrives at a target or a stop."""
 MAX_CRUISE_S = 1e9
 PUSH_DEG = 0.05
 """Estimate of how far a motor that pushes at rest would turn, to find out whether an obstacle blocks it."""
@@ -150,11 +150,11 @@ class SimulatedMotor(DriverMotor):
         """Speed of the encoder at the end of the last tick; it does not change within a tick."""
         self.blocked_ticks = 0
         self.is_barred = False
-        """Whether an obstacle of the world keeps the motor from turning on."""
+        """Whether an obstacle in the world keeps the motor from turning any farther."""
         self._tick = 0
         """Number of the last tick that has been run."""
         self._even_ticks = 0
-        """Number of ticks for which the speed has been as the control wants it."""
+        """Number of successive ticks for which the motor's speed has been as the control wants it."""
         self._cruise_dps = 0.0
         """The speed at which the motor runs evenly, without single steps, in degrees per second; 0 if it does not."""
         self._cruise_end_ns = 0
