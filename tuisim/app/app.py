@@ -90,7 +90,7 @@ if TYPE_CHECKING:
     from tuisim.terminal.pixels import Pixels
 
 FIRST_PAINT_DELAY_S = 0.05
-"""Seconds for which the app sends no large pictures after the start: the screen is painted several times."""
+"""Seconds after the start until large data, such as the mat, is drawn: before, the screen is painted repeatedly."""
 MAX_PROBLEMS = 3
 """Maximum number of errors in `config.toml` that the app shows; further ones are not shown."""
 _CURSOR_QUERY = "\x1b[6n"
@@ -130,9 +130,9 @@ class AppSettings:
     replay: StoredRun | None = None
     """A stored run to show; None for none. `spec` and `program` are then those of the stored run."""
     panels_on: frozenset[str] = field(default_factory=frozenset)
-    """Ids of the panels that are shown at the start, whatever the size of the terminal."""
+    """Ids of the panels that options, a lesson or goals show, whatever the size of the terminal."""
     panels_off: frozenset[str] = field(default_factory=frozenset)
-    """Ids of the panels that are hidden at the start, whatever the size of the terminal."""
+    """Ids of the panels that options hide, whatever the size of the terminal."""
     autorun: bool = False
     """Whether to run the program as soon as the mat is ready."""
     quiet: bool = False

@@ -42,7 +42,7 @@ _PYBRICKS = "tuisim.engine.shim.pybricks."
 _SIMULATED_NAMES = frozenset(
     {"KIND", "STOPS", "SETTINGS_WHILE_ACTIVE", "brick", "device_port", "port", "sign"}
 )
-"""Names of Pybricks classes that only the simulator has; a list of candidates leaves them out."""
+"""Attributes that only the simulated classes of Pybricks have; a list of candidates leaves them out."""
 _GENERAL = frozenset({"ev3dev2", "ev3dev2.sensor"})
 """Modules of the classes that all devices of `ev3dev2` share; few programs use their names, which come last."""
 _COURSE_ATTRIBUTES = frozenset({"reflected_light_intensity_pc", "full_reflected_light_intensity"})
