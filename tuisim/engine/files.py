@@ -33,11 +33,12 @@ _Spec = TypeVar("_Spec", bound=Spec)
 
 MAX_FILE_BYTES = 1_000_000
 MAX_LINE = 1000
-"""Longest line of a TOML file: a key of many thousand parts would take the parser hours."""
+"""Most characters of a line in a TOML file; longer lines are refused, because a key of many thousand parts would take
+the parser hours."""
 
 MAX_NAME = 100
 MAX_WHOLE = 2**63
-"""Larger integers are refused: no key has a use for them."""
+"""Integers of a file beyond ± this value are refused: no key has a use for them."""
 FILE_SUFFIXES = (".toml", ".json")
 
 

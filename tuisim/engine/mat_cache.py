@@ -33,13 +33,13 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 MAX_CACHED_FILES = 30
-"""Beyond this number the least recently used files are removed; the sums of one diameter take 33 MB."""
+"""The cache keeps this many files, the most recently used ones; the file with the sums of one diameter takes 33 MB."""
 
 MAX_DIAMETER_PX = 128
-"""The sum of a disc row of white pixels must fit into a signed 16-bit integer."""
+"""Largest diameter of a disc: the sum of a row of its pixels, all white, must fit into a signed 16-bit integer."""
 
 _LAYOUT = 1
-"""Version in the file names: increase it when the layout or the decoding changes."""
+"""Version in the names of the cached files: increase it when the files' layout or the decoding of images changes."""
 _BLOCK_ROWS = 64
 """Rows summed at a time, few enough for the processor's cache."""
 _NOTE_SUFFIX = ".check"

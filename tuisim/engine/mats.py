@@ -42,17 +42,18 @@ class Background:
     obstacles: tuple[Obstacle, ...] = ()
     """The default obstacles on the mat."""
     brick_start: Pose | None = None
-    """The start pose of programs for a brick, if it differs: on the line, or in the middle of an empty field."""
+    """The start pose of programs for a brick, on the line or in the middle of an empty field; None if it is the usual
+    start pose."""
     sensor_x_mm: Mapping[str, float] = field(default_factory=dict)
     """The x positions of colour sensors on this mat, by name, where they differ from the robot's."""
     original: str = ""
-    """File name of its image in the course's browser simulator, empty if it had none."""
+    """File name of the mat's image in the course's browser simulator; empty if that simulator had no such image."""
     shipped: bool = True
     """Whether tuisim comes with its image."""
     is_own: bool = False
     """Whether the image is the user's own, in a folder of mats."""
     fit: str | None = None
-    """The default fit of its image, one of `engine.core.spec.BACKGROUND_FITS`; None is the first."""
+    """The default fit of the mat's image, one of `engine.core.spec.BACKGROUND_FITS`; None for the first of these."""
 
     def find_spec_name(self) -> str:
         """Return the mat's name in a run specification.
@@ -73,7 +74,7 @@ class _MatEntry:
     original: str = ""
     shipped: bool = True
     obstacles: list[Any] = field(default_factory=list)
-    """Each as [x, y, width, height] in mm."""
+    """The mat's default obstacles, each as [x, y, width, height] in mm."""
     sensor_x_mm: dict[str, Any] = field(default_factory=dict)
 
 
@@ -170,7 +171,7 @@ SUFFIXES = frozenset({".png", ".jpg", ".jpeg", ".gif", ".bmp", ".tif", ".tiff", 
 """Suffixes of files that count as images in a folder of mats."""
 
 AS_THERE = "corner"
-"""The fit that the browser simulator used."""
+"""The fit of a mat's image in the course's browser simulator, one of `BACKGROUND_FITS`."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -45,11 +45,11 @@ class Variable:
 
     name: str
     kind: str
-    """Name of the type."""
+    """Name of the type of the variable's value."""
     value: str
     """The value as text, truncated for display."""
     changed: bool
-    """Whether the text differs from the last inspection of this function; new names count as changed."""
+    """Whether `value` differs from that at the last inspection of the same function; new variables count as changed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,11 +71,12 @@ class ExecutedLine:
     line: int
     thread: str
     depth: int
-    """Number of open calls of the program's own code, from 1."""
+    """Number of open calls of the program's own functions when the line ran; 1 for a line outside all functions."""
 
 
 CLEANUP_S = 2
-"""Simulated seconds for the program's cleanup after a stop: a recording may go on so long after the time limit."""
+"""Simulated seconds that a program has for its cleanup after a stop: a recording may be longer than the time limit by
+this."""
 
 PROTOCOL_VERSION = 4
 COMMAND_SIGNAL, STACK_SIGNAL = signal.SIGRTMIN + 11, signal.SIGRTMIN + 12
@@ -87,9 +88,9 @@ class End(StrEnum):
 
     FINISHED = "finished"
     RAISED = "raised"
-    """By an exception of the program."""
+    """An exception of the program ended the run."""
     STOPPED = "stopped"
-    """By the user."""
+    """The user stopped the run."""
     TIME_LIMIT = "time_limit"
     STALLED = "stalled"
     DEADLOCK = "deadlock"
@@ -314,7 +315,7 @@ class Answer(Message):
 
     text: str | None
     at_once: bool = False
-    """Whether simulated time stood still until the answer arrived."""
+    """Whether simulated time stood still while the program waited for this answer."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -404,7 +405,7 @@ class Paused(Message):
     """Line of the program that is about to run, or that spends the time; 0 if there is none."""
     reason: PauseReason = PauseReason.ASKED
     detail: str = ""
-    """Text of the breakpoint that was hit."""
+    """Text of the breakpoint that was hit; empty if the run paused for another reason."""
     value: str = ""
     """The reason for the hit: the value, the printed line, or why the condition could not be evaluated."""
     ordinal: int = BEFORE_NEXT_TICK
@@ -431,7 +432,7 @@ class Spoke(Message):
     """The child's event that the program spoke, or played tones or a sound file."""
 
     text: str
-    """The spoken text; in brackets for other sounds."""
+    """The spoken text; for other sounds a description in brackets."""
     time_ns: int
     tones: str = ""
     """Successive tones, as JSON: a list of [Hz, ms, pause in ms after it]; 0 Hz is silence.
@@ -483,9 +484,9 @@ class MotorRegisters:
     """The last command; empty if it was `stop` or there was none."""
     polarity: str = "normal"
     speed_sp: float = 0.0
-    """In degrees per second."""
+    """The motor's attribute `speed_sp`, in degrees per second."""
     position_sp: float = 0.0
-    """In degrees."""
+    """The motor's attribute `position_sp`, in degrees."""
     time_sp_s: float = 0.0
     speed_dps: float | None = None
     """The speed; in the browser simulator also of a wheel that stands. None if it is not known."""

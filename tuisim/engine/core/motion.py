@@ -61,10 +61,10 @@ ROOM_TICKS = 256
 """Number of records beyond the current ones for which space is requested from the sink."""
 
 CHECK_TICKS = 4
-"""Obstacles are checked again when the distance known to be free is less than this many ticks need."""
+"""The way that is free of obstacles is computed for at least this many ticks ahead, if that many are left to run."""
 
 MAX_SINGLE_TICKS = 3
-"""Up to this number of ticks, setting up a tight loop costs more than it saves."""
+"""Up to this number of ticks are run one by one: for so few, setting up a tight loop costs more than it saves."""
 
 
 def compute_stall_ticks(tick_hz: int) -> int:

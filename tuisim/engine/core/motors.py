@@ -19,7 +19,7 @@ ENDLESS = 1 << 60
 """A number of ticks that no run reaches; it stands for `never`."""
 
 MEDIUM_MAX_SPEED_DPS = 1560.0
-"""Medium motor, no load (EV3 motor driver table)."""
+"""Highest speed of a medium motor of the EV3 without load, in degrees per second (EV3 motor driver table)."""
 
 STANDSTILL_DEG = 1e-3
 """A wheel that turns by less than this in a tick counts as standing."""

@@ -69,11 +69,11 @@ class Clamping(NamedTuple):
     """
 
     shift: tuple[float, ...]
-    """Mean error for each value; it is not 0 near the ends of the range, because values are clamped."""
+    """Mean error of each pixel value, 0 to 255; not 0 near both ends, because noisy values are clamped there."""
     variance: tuple[float, ...]
-    """Variance of the error for each value."""
+    """Variance of the error of each pixel value, 0 to 255."""
     even: bytes
-    """The values that are never clamped: their mean does not move, and their variance is `even_variance`."""
+    """The pixel values that are never clamped: their mean error is 0, and the variance is `even_variance`."""
     even_variance: float
 
 

@@ -64,7 +64,7 @@ PART_CODES: Mapping[tuple[str, str, str], int] = {
     )
     if place[1] in HUB_PORTS or (place[1] in OUTPUT_PORTS) == (place[2] in MOTOR_PARTS)
 }
-"""The number of each role, port and class that fit, by which commands name them."""
+"""The number by which commands name a plugged-in part, for each role, port and class of part that fit together."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +79,8 @@ class PluggedPart:
     line: int
     """The line of the program that needed the part; 0 if no line did."""
     role: str = ""
-    """One of `ROLES`. The entry of a left wheel is followed by that of the right one."""
+    """What the motor drives, one of `ROLES`. The entry of a left wheel's motor is followed by that of the right
+    wheel's."""
 
     def __post_init__(self) -> None:
         if (self.role, self.port, self.part) not in PART_CODES:

@@ -52,11 +52,11 @@ class MotorLaw(StrEnum):
     """How motors move and execute commands, and which library controls them."""
 
     BRICK = "brick"
-    """Moves end exactly at their goal or time, as the course defines."""
+    """Motors end their moves exactly at the goal or the time, as the course defines."""
     EV3DEV = "ev3dev"
-    """As on a brick with ev3dev: the electric motor, and the driver's control."""
+    """Motors move as on a brick with ev3dev: the electric motor and the control in its driver are simulated."""
     NBEV3DEVSIM = "nbev3devsim"
-    """As in the browser simulator of that name, to the last bit."""
+    """Motors move as in the browser simulator nbev3devsim, equal to the last bit."""
     PYBRICKS = "pybricks"
     """Motors follow trajectories, as in Pybricks 2.0."""
     PYBRICKS_4 = "pybricks-4"
@@ -200,20 +200,21 @@ class ProfileSpec(Spec):
         source="Pybricks 2.0, `pbdevice.c`: 30 ms; ev3: 15 ms, an estimate: the driver waits for a message in the "
         "new mode; the course, the old simulator: none",
     )
-    """Time that a sensor needs for the first reading in another mode than before."""
+    """Time that a change to another mode takes a sensor; 0 for a change that takes no time."""
     infrared_switch_ns: int = _build_cost(
         default=0,
         later=True,
         source="Pybricks 2.0, `pbdevice.c`, and ev3: 1100 ms (pybricks/support, issue 14)",
     )
-    """Time that the infrared sensor needs for the first reading in another mode than before."""
+    """Time that a change to another mode takes an infrared sensor; 0 for a change that takes no time."""
     stale_reading_ns: int = _build_cost(
         default=0,
         later=True,
         source="measured on a brick (pybricks/support, issue 14): ev3: old values up to 18 ms after the change, "
         "new ones from 22 ms on; the course, the old simulator: none",
     )
-    """For so long after a change of mode, a colour sensor returns its last reading in that mode."""
+    """For so long after a change to a mode, a colour sensor still returns the values it last had in this new mode; 0:
+    never."""
     white_percent: float = number(
         50,
         100,
@@ -249,7 +250,8 @@ class ProfileSpec(Spec):
         unit="mm",
         source="measured (ETH Zürich, with the NXT sensor): ev3: no echo below 30 mm; the course, the old simulator: 0",
     )
-    """Smallest distance of a surface whose echo an ultrasonic sensor hears."""
+    """Smallest distance of a surface whose echo an ultrasonic sensor hears; a closer surface reads as one without an
+    echo."""
     gyro_max_dps: int = whole(
         0,
         100_000,

@@ -64,11 +64,12 @@ class Simulation(Motion):
         )
         super().__init__(spec, sink, self.others)
         self.on_turns: Callable[[tuple[Turn, ...]], None] = lambda _: None
-        """Called when one of the other motors deviates from its last report: until then it turns as reported."""
+        """Called with the turns of `others` when one of these motors deviates from its last report; until then it turns
+        as reported."""
         self._reported: tuple[Turn, ...] = ((0.0, 0.0),) * len(self.others)
         self._reported_tick = 0
         self.scales: dict[Motor, float] = {}
-        """How many degrees the program counts for one of a motor; 1 where it is missing."""
+        """How many degrees the program counts for one degree of a motor; 1 for a motor without an entry."""
         self.bases: dict[int, DriveBase] = {}
         """The newest drive bases that the program has made, by number; the last one made comes last."""
         self.on_command: CommandHook = lambda *_: None

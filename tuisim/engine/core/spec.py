@@ -78,7 +78,7 @@ BUTTONS = ("up", "down", "left", "right", "enter", "backspace")
 """The brick's buttons, by their names in the library."""
 
 TOUCH = "touch"
-"""Presses every touch sensor by hand."""
+"""Name in `PRESSABLE` that stands for every touch sensor of the robot."""
 
 PRESSABLE = (
     *(*BUTTONS, TOUCH, *INPUT_PORTS, *REMOTE_BY_HAND, *HUB_PORTS),
@@ -212,7 +212,7 @@ class TouchSpec(SensorSpec):
         later=True,
         help="port of the motor that presses it, in place of obstacles and walls",
     )
-    """Port of the motor that presses it at an end stop, in place of obstacles and walls; empty for a bumper."""
+    """Port of the motor that presses the sensor at an end stop; empty for a bumper, which obstacles and walls press."""
     pressed_at: str = choice(
         MOTOR_ENDS,
         what="end",
@@ -220,7 +220,7 @@ class TouchSpec(SensorSpec):
         later=True,
         help="low or high: the end stop of the motor that presses it",
     )
-    """The end stop at which that motor presses it, one of `MOTOR_ENDS`."""
+    """The end stop at which the motor on the port `pressed_by` presses the sensor, one of `MOTOR_ENDS`."""
 
 
 @spec
@@ -307,7 +307,7 @@ class UltrasonicSpec(SensorSpec):
         label="Noise ± mm",
         help="uniform, plus or minus this value",
     )
-    """Uniform ±noise_mm on every distance."""
+    """Every measured distance has a random error, uniform from -noise_mm to +noise_mm."""
 
 
 @spec
@@ -328,7 +328,7 @@ class GyroSpec(SensorSpec):
         label="Keeps angle",
         help="a newer sensor, from date code N4 on: keeps its angle when the mode changes",
     )
-    """Whether a change of mode leaves the angle as it is, where the profile lets it restart."""
+    """Whether a change of mode leaves the gyro's angle as it is, even if the profile has `gyro_restarts`."""
 
 
 @spec
@@ -596,7 +596,7 @@ class Mount(NamedTuple):
     many: bool
     """Whether the field is a tuple; otherwise it is one sensor or None."""
     standard: bool
-    """Whether panels and files have a dedicated place for it; all others are handled generically."""
+    """Whether panels and files have a dedicated place for this field; all other fields are handled generically."""
     key: str
     """Key of the sensors in a robot file."""
 
@@ -640,7 +640,7 @@ class NoiseSpec(Spec):
         flags=("-N", "--sensornoise"),
         help="light noise, ± 0 … 128 on each pixel of 0 … 255",
     )
-    """0 … 128: uniform ±light on every pixel and channel that a colour sensor sees."""
+    """Every pixel and channel that a colour sensor sees has a random error, uniform from -light to +light (0 … 128)."""
     motor: int = whole(
         0,
         500,
@@ -650,7 +650,7 @@ class NoiseSpec(Spec):
         flags=("-M", "--motornoise"),
         help="motor noise, ± 0 … 500 on each wheel and tick",
     )
-    """0 … 500: uniform ±motor degrees per second on the wheel speed, every tick."""
+    """Each tick, a wheel's speed has a random error, uniform from -motor to +motor degrees per second (0 … 500)."""
 
 
 START_VALUES = {

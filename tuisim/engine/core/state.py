@@ -28,7 +28,7 @@ class Instant:
     left_speed_dps: float = 0.0
     right_speed_dps: float = 0.0
     turn_rate_dps: float = 0.0
-    """Counter-clockwise, over the last tick, as a gyro senses it."""
+    """Rate of turn of the robot over the last tick, counter-clockwise, as a gyro senses it."""
     gyro_zero_deg: float = 0.0
     """Heading at which the gyro reads 0."""
     press_flags: int = 0
@@ -40,7 +40,7 @@ class Instant:
     motors: tuple[MotorValues, ...] = ()
     """The values of all motors' drivers; empty if the motors have no drivers, or the values were not requested."""
     scales: tuple[float, ...] = ()
-    """How many degrees the program counts for one of each motor; empty if this was not requested."""
+    """How many degrees the program counts for one degree of each motor; empty if this was not requested."""
 
     def get_scale(self, number: int) -> float:
         """Return how many degrees the program counts while a motor turns by one degree.
@@ -72,7 +72,7 @@ class Present:
     gyro_zero_deg: float
     pen_down: bool
     actions: int
-    """The number of user actions in the record of the tick; after another one, these values are outdated."""
+    """The number of user actions in the record of the tick; a further user action makes these values outdated."""
 
     def apply(self, instant: Instant) -> Instant:
         """Return a copy of the last tick's instant in which these values replace those of the tick."""

@@ -36,11 +36,11 @@ FLAG_RIGHT_RUNNING = 2
 RUNNING_FLAGS = FLAG_LEFT_RUNNING | FLAG_RIGHT_RUNNING
 FLAG_PEN_DOWN = 4
 FLAG_FIRST_END = 8
-"""The lowest of the flags of `engine.core.end_stops`."""
+"""Lowest bit of the flags in a tick record which say that a motor is at an end stop (`engine.core.end_stops`)."""
 FLAG_FIRST_HAND = 1 << 12
 """The lowest of the flags of touch sensors that are pressed by hand, one for each of `INPUT_PORTS`."""
 END_FLAGS = FLAG_FIRST_HAND - FLAG_FIRST_END
-"""All flags of `engine.core.end_stops`."""
+"""All bits of the flags in a tick record which say that a motor is at an end stop."""
 PRESS_FLAGS = -FLAG_FIRST_END
 """All flags that decide about touch sensors: those of end stops, and those of hands."""
 

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
-"""Real numbers, shape (n,)."""
+"""Array of real numbers, shape (n,)."""
 
 IntArray = NDArray[np.int64]
-"""Row numbers, shape (n,)."""
+"""Array of row numbers, shape (n,)."""
 
 
 def find_spans(is_so: NDArray[np.bool_]) -> IntArray:

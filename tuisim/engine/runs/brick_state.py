@@ -34,14 +34,14 @@ LIGHT_NAMES: Mapping[str, Sequence[str]] = {
 }
 """The LEDs of a hub's status light, and of connected controllers by what stands for their port."""
 PORT_LIGHT = "light "
-"""Begins the name of a light on a port of a hub; the port follows."""
+"""Prefix of the name of a light on a port of a hub; the port's letter follows."""
 SIDE_PIXELS = 5
 PIXEL_NAMES = tuple(f"{row}{column}" for row in range(SIDE_PIXELS) for column in range(SIDE_PIXELS))
 """The LEDs of a hub's matrix, row by row from the top."""
 
 BLANK = bytes(ROW_BYTES * DISPLAY_HEIGHT)
 _MAX_CELLS = 1000
-"""More columns and rows than the text screen has with any font."""
+"""Upper bound for the columns and rows of a text screen: no font gives more."""
 _MAX_NUMBER = 1e12
 
 
@@ -52,7 +52,7 @@ class TextScreen:
     columns: int
     rows: int
     lines: tuple[str, ...]
-    """One text per row, at most `columns` characters."""
+    """The text of each row of the text screen, at most `columns` characters."""
     inverse: tuple[tuple[int, int, int], ...] = ()
     """Spans in reverse video: row, first column and end column (exclusive), all from 0."""
 
@@ -62,7 +62,8 @@ class BrickState:
     """The state of everything on the brick that a user sees or hears, at one time: LEDs, display, motors, sound."""
 
     leds: Mapping[str, int] = field(default_factory=dict)
-    """Brightness by name, as in `LED_NAMES`, 0 to 255. Empty until the program sets an LED: then they are green."""
+    """Brightness, 0 to 255, by the LED's name as in `LED_NAMES`. Empty until the program sets an LED; until then the
+    LEDs are green."""
     picture: bytes = BLANK
     """The display, one bit per pixel, 1 is dark, from the top left; rows of `ROW_BYTES` bytes, highest bit first."""
     text: TextScreen | None = None

@@ -55,7 +55,7 @@ class SensorKind:
     measure: Callable[[Any, Instant, RunSpec, Field], tuple[float, ...]]
     """Takes spec and instant; returns the values of those columns that are measured."""
     port_mode: str = "ev3-uart"
-    """The port mode it needs; `ev3-analog` for a sensor without a processor of its own."""
+    """The port mode that the sensor needs; `ev3-analog` for a sensor without a processor of its own."""
 
     def names(self, sensor: Any) -> tuple[str, ...]:
         """Return the names of a sensor's measured columns."""

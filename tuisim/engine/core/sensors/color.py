@@ -140,10 +140,10 @@ def find_brick_color_code(red: int, green: int, blue: int) -> int:
 
 WHITE_CODE, BROWN_CODE = 6, 7
 WHITE_SHARE = 0.5
-"""White has at least this share of each channel."""
+"""A colour counts as white only if each channel has at least this share of its maximum."""
 BROWN_HUES = range(10, 60)
 MAX_BROWN_VALUE = 50
-"""Brown is darker than this, in percent."""
+"""A colour counts as brown only if its value (as in HSV) is lower than this, in percent."""
 MIN_BROWN_SATURATION = 20
 
 
@@ -205,9 +205,9 @@ class Response(NamedTuple):
     """How a colour sensor converts a channel of the mat, 0 … 255, to its own value."""
 
     dark: int
-    """Value of a channel on black."""
+    """Value of a channel that the sensor reads on black."""
     span: int
-    """How much larger the value is on white."""
+    """How much larger the value of a channel is on white than on black."""
 
     def channel(self, value: float, is_over_field: bool) -> float:
         """Return the sensor's value for one channel (red, green or blue) of what it sees.

@@ -23,11 +23,11 @@ RAY_ANGLES_DEG = (-10.0, -5.0, 0.0, 5.0, 10.0)
 SEEK_RANGE_MM = 2000.0
 """Distance of a beacon that reads 100 %; farther beacons are not found."""
 SEEK_ANGLE_DEG = 100.0
-"""A beacon at a larger angle is not found."""
+"""Largest angle to the sensor's direction, to either side, at which the sensor finds a beacon."""
 SEEK_STEPS = 25
-"""The heading that is read for a beacon at `SEEK_ANGLE_DEG`."""
+"""The value of the heading that the sensor reads for a beacon at `SEEK_ANGLE_DEG`."""
 NOT_FOUND = (0, -128)
-"""The heading and the distance that are read without a beacon."""
+"""The values of heading and distance that the sensor reads if it finds no beacon."""
 
 _REM_A_NONE = 262
 _REM_A_BUTTONS = {"top_left": 16, "bottom_left": 32, "top_right": 64, "bottom_right": 128}

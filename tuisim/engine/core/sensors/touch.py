@@ -30,7 +30,7 @@ _PORTS_OF_FLAG = tuple(
 )
 """The ports of each flag: of a hub's six ports, A and E share one, and so do B and F."""
 REACH_MM = 2.0
-"""Distance at which the bumper reacts: it yields before the robot is stopped."""
+"""Distance of an obstacle at which a bumper reacts: the bumper yields before the obstacle stops the robot."""
 
 
 def pressed(pose: Pose, spec: TouchSpec, world: WorldSpec) -> bool:

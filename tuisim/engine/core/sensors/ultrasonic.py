@@ -36,10 +36,10 @@ class Surfaces:
     """All edges that can echo, sorted by coordinate, so that a ray meets them in their order."""
 
     upright: tuple[Edge, ...]
-    """x, lower y, upper y."""
+    """Edges parallel to the y axis: x, lower y, upper y."""
     upright_at: tuple[float, ...]
     level: tuple[Edge, ...]
-    """y, left x, right x."""
+    """Edges parallel to the x axis: y, left x, right x."""
     level_at: tuple[float, ...]
 
 

@@ -101,11 +101,11 @@ class Controller:
         self.duty_limit: int | None = None
         """Highest power of the current move, in hundredths of a percent; None for that of the settings."""
         self.seeks_stall = False
-        """Whether the motion goes on until something stops it."""
+        """Whether the motion goes on until something stops the motor."""
         self._goal: Segment | None = None
         """For a motion that goes on after a move: where the move would have ended, with its rate."""
         self._paused_us = 0
-        """How long the trajectory has paused, in µs."""
+        """For how long, in µs, the trajectory of the present motion has been paused in all."""
         self._behind_milli = 0
         """How far a motion at a speed is behind its trajectory for good, in thousandths of a count."""
         self._stalled_us = 0

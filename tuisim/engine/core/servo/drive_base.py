@@ -145,17 +145,18 @@ class DriveBase:
         motor = left.control.settings
         distance, heading = compute_base_settings(motor, wheel_diameter_mm, axle_track_mm)
         self.distance = Controller(distance, slips=True)
-        """Controls the sum; its units are mm."""
+        """Controls the sum of both motors' positions: the distance, in mm for the program."""
         self.heading = Controller(heading, slips=True)
-        """Controls the difference; its units are degrees."""
+        """Controls the difference of the motors' positions: the heading, in degrees for the program."""
         self.usual, self._pace = compute_usual_settings(left.law, distance, heading)
         """How it moves, unless the program says something else: in mm and degrees, and in counts; until the program
         sets it, these are not rounded to whole units."""
         self._slowing: tuple[int | None, int | None] = None, None
-        """How straight moves and turns stop, in counts; None: as they speed up."""
+        """Decelerations of straight moves and of turns, in counts; None for the same as the acceleration."""
         self._ending = Ending.HOLD
         self._goal: tuple[int, int, float] | None = None
-        """Of a move that goes on at its end: 0 for a distance or 1 for a turn, where it began, and how far it goes."""
+        """Of a move after which the motion goes on: 0 for a distance or 1 for a turn, where the move began, and its
+        length, both in thousandths of a count; None for other moves."""
         self.uses_gyro = False
         """Whether the heading comes from a gyro, not from the wheels."""
         self._offset = 0

@@ -141,7 +141,7 @@ class ServoMotor:
         self._free_dps = 0.0
         self._jump_deg = 0.0
         self._past: deque[tuple[int, float]] = deque(maxlen=tick_hz * MAX_WINDOW_MS // 1000 + 1)
-        """The last ticks in which the motor was not at rest, with its positions."""
+        """The last ticks in which the motor was not at rest, each with the motor's position."""
         self._tick = self._quiet = 0
         self._limit_speed()
 

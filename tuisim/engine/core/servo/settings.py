@@ -47,13 +47,13 @@ class ControlSettings:
     feed_forward: int
     """Power that is added in the direction of motion, in hundredths of a percent."""
     position_tolerance: float
-    """A move is done when it is this close to its target..."""
+    """A move is done when the motor is at most this many counts from the target, and slower than `speed_tolerance`."""
     speed_tolerance: int
-    """...and slower than this."""
+    """A move is done only when the motor is slower than this, in counts per second."""
     stall_speed: int
-    """A motor that is slower than this while its power is used up..."""
+    """A motor slower than this, in counts per second, at full power is stalled after `stall_time_ms`."""
     stall_time_ms: int
-    """...for this long is stalled."""
+    """A motor that is slower than `stall_speed` at full power for this long is stalled."""
     speed_window_ms: int = 0
     """Time over which the speed is averaged to decide whether a move is done; 0 uses the present speed."""
     torque_unm: int = 0
@@ -115,9 +115,9 @@ MODELS: Mapping[str, PlantSpec] = {
 """What limits each kind of motor, by `MotorSpec.kind`, by the data that the firmware's authors measured."""
 
 SPEED_WINDOW_MS = 100
-"""Firmware that computes with torques measures speeds over this time."""
+"""Firmware that computes with torques averages speeds over this time, in milliseconds."""
 TUNED_MV = 7500
-"""The gains of firmware that computes with torques fit the torque at this voltage."""
+"""Firmware that computes with torques has gains that fit the torque at this voltage, in mV."""
 BATTERY_V = 8.0
 """The voltage at which the motors' numbers hold."""
 

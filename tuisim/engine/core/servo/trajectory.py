@@ -18,7 +18,7 @@ MILLI = 1000
 MAX_DURATION_US = 1_800_000_000
 """The longest duration of a move: half an hour."""
 ENDLESS_S = 60
-"""What the firmware assumes an endless move to take. It has no effect on the motion."""
+"""Seconds that the firmware assumes for a motion without an end: its rate is at most the acceleration times this."""
 
 
 def divide(dividend: int, divisor: int) -> int:
@@ -73,7 +73,7 @@ class Segment(NamedTuple):
 
 
 Measure = Callable[[int], Segment]
-"""Returns where a motion is at a time, as the start of a trajectory."""
+"""Takes a time in µs; returns where a motion is at that time, as the start of a trajectory."""
 
 
 class Trajectory(NamedTuple):
