@@ -60,7 +60,7 @@ class RunInfo:
     """Sequential number of the run, from 1; 0 requests the next number."""
     id: str
     created: str
-    """ISO 8601, UTC."""
+    """Time at which the run was created, as text in ISO 8601, UTC."""
     program: str
     background: str
     profile: str
@@ -85,7 +85,7 @@ class RunInfo:
 STUDENT_TAG = "student:"
 """Prefix of the tag that names the student of a run."""
 _MAX_RUNS = 1 << 40
-"""A greater number than that of any run comes from a damaged file, and would leave none for the next run."""
+"""Largest number of a run; a file with a larger one is damaged, and would leave no number for the next run."""
 _MAX_ID = 255
 """Longest name of a folder in bytes."""
 _NAMES = tuple(field.name for field in fields(RunInfo))

@@ -42,22 +42,22 @@ if TYPE_CHECKING:
 _REPEAT_NS = NS_PER_S // 4
 """A command that a part gets again within this time is a repetition of the one before."""
 _MAX_EVENTS = 1 << 17
-"""Number of events of a run; further commands are left out. At four events a second, this is enough for nine hours."""
+"""Largest number of events of a run; further commands are left out. At four a second, this is enough for nine hours."""
 _MAX_SCALES = 1 << 10
-"""Number of changes of what a program counts as a degree of a motor; further ones are left out."""
+"""Largest number of changes of scale (`ScaleChange`) of a run; further changes are left out."""
 _PIECE = 1 << 15
 """Number of commands that are read at a time."""
 _FINEST = 500
 """Events closer than the elapsed time divided by this have one mark, so that marks stay few."""
 _STILL_DPS = 0.5
-"""A motor that is slower stands still."""
+"""Speed in °/s below which a motor counts as standing still."""
 _WORDS = re.compile(r"command(?:\s+(?P<words>.+))?", re.IGNORECASE)
 _SPEEDS = (Aim.SPEED, Aim.BASE_SPEED)
 _BASE_AIMS = (Aim.BASE_SPEED, Aim.BASE_WAY)
 
 
 ScaleChange: TypeAlias = tuple[int, str, float]
-"""From which tick on a program counts how many degrees for one of the motor on a port; before, and without, it is 1."""
+"""A tick, a motor's port, and the degrees that a program counts from then on for each degree of the motor."""
 
 
 class CommandedRun(Protocol):

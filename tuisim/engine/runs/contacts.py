@@ -39,7 +39,7 @@ _STILL = 1e-3
 WALL = "the wall"
 LEFT_FIELD = "left the field, which has no walls (--walls on)"
 _WALLS = 4
-"""`Solids.measure_gaps_mm` begins with the walls."""
+"""Number of walls, whose gaps come first in the result of `Solids.measure_gaps_mm`."""
 
 _POSE = ["x_mm", "y_mm", "heading_deg"]
 

@@ -67,9 +67,9 @@ class Divergence:
     end_mm: float
     end_s: float
     exceeded: tuple[tuple[float, float | None], ...]
-    """Distances in mm, and the time in s at which each was first exceeded; None for never."""
+    """Distances between the two robots in mm, and the time in s at which each was first exceeded; None for never."""
     table: tuple[tuple[float, float, float], ...]
-    """Time in s, distance in mm, difference of heading in degrees, at regular intervals."""
+    """Time in s, distance of the two robots in mm, difference of their headings in degrees, at regular intervals."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +81,7 @@ class RunDiff:
     program: tuple[str, ...]
     """First lines of a unified diff of the programs; empty if they are equal."""
     by_time: bool
-    """Whether the tick rates differ: then times are compared, and no record is equal."""
+    """Whether the tick rates of the two runs differ: then times are compared, and no record is equal."""
     tick: TickDifference | None
     line: TickDifference | None
     """The first tick with a different source line."""

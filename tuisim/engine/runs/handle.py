@@ -142,7 +142,7 @@ class RunHandle:
         self.first_spec = spec
         self.field = field
         self.spec, self.plugged = spec, list[PluggedPart]()
-        """The run with the parts that have been plugged in, and these."""
+        """The spec of the run with the parts that have been plugged in, and these parts."""
         self._options = options
         self._store = store
         self._run = run = store.create_run(
@@ -162,7 +162,7 @@ class RunHandle:
         """The registers of the wheel motors; known once the run has ended, unless it was killed."""
         self.telemetry, self.output = open_views(self.folder, is_checked=True)
         self._unsent: list[Message] = []
-        """Commands sent before the child listens: the signal that announces one would kill it."""
+        """Commands kept until the child listens: before, the signal that announces a command would kill the child."""
         self._stop_at: float | None = None
         self._asked_at = self._announced_at = 0.0
         self._look_at_s = time.monotonic() + LOOK_EVERY_S

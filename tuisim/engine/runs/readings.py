@@ -33,7 +33,7 @@ READINGS_MAGIC = b"TUISIMRD"
 READING_RECORD = Struct("<qIBB2x")
 """Simulated time in ns, source line (0: none), index into `READING_PORTS`, index into `READING_MODES`."""
 _PACKED = Struct("<qIH2x")
-"""The same with a code of `READING_CODES` in place of both indices."""
+"""`READING_RECORD` with a code of `READING_CODES` in place of both indices."""
 _pack_into = _PACKED.pack_into
 READING_FIELDS = (("time_ns", "<i8"), ("line", "<u4"), ("port", "u1"), ("mode", "u1"), ("", "V2"))
 """Name and type of each field of a record, the type as numpy writes it."""
@@ -81,7 +81,7 @@ READING_CODES: Mapping[tuple[str, str], int] = {
 """The code for `ReadingsWriter.add`, by port and mode."""
 
 MAX_READINGS = 1 << 22
-"""Further readings of a run are only counted."""
+"""Largest number of readings that are recorded of a run; further readings are only counted."""
 
 
 class ReadingsWriter(CountedWriter):
@@ -126,7 +126,7 @@ class Readings:
     """The record of when a program has read which sensor, encoder or button during a run, in order of time."""
 
     rows: Array
-    """One row of `READING_FIELDS` for each."""
+    """One row for each reading, with the fields of `READING_FIELDS`."""
     left_out: int = 0
     """Number of readings for which the file had no space."""
 

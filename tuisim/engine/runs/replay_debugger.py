@@ -74,7 +74,7 @@ class ReplayDebugger:
         self._back = 0
         """How many lines before the paused position the requested line is."""
         self._line = 0
-        """The line at whose last start in the tick to pause; 0 for none."""
+        """Number of the line at whose last start in the tick the re-run pauses; 0 for none."""
         self._next_command: protocol.Message | None = None
         """Command for resuming once it is paused."""
         self._aim: Position | None = None

@@ -73,7 +73,7 @@ class StoredRun:
     number: int
     """Number in the catalogue; 0 if the folder is not listed."""
     created: str
-    """ISO 8601, UTC."""
+    """Time at which the run was created, as text in ISO 8601, UTC."""
     live: bool
     program: Program
     spec: RunSpec

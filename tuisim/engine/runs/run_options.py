@@ -23,7 +23,7 @@ class RunOptions:
     live: bool = False
     """Whether the run is paced by the wall clock, can be paused and accepts user actions; otherwise it is headless."""
     speed: float = 1.0
-    """1.0 is real time, 0 as fast as possible."""
+    """Speed of simulated time relative to real time: 1.0 is real time, 0 as fast as possible."""
     start_paused: bool = False
     time_limit_s: float = DEFAULT_TIME_LIMIT_S
     """Simulated time after which the run is stopped; 0 is no limit."""
@@ -44,7 +44,7 @@ class RunOptions:
     trace_from_tick: int | None = None
     """Count lines from this tick on, so that `LineHistory` includes them; until the run first pauses."""
     hold_at: tuple[int, int] | None = None
-    """Run at full speed to this instant and pause: tick and ordinal, as in `Paused`. (0, 1) is the first line."""
+    """Tick and ordinal, as in `Paused`, where the run pauses after full speed until then; (0, 1) is the first line."""
 
     @property
     def can_pause(self) -> bool:

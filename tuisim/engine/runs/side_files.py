@@ -46,7 +46,7 @@ They allow repeating the run after the modules have changed or are gone.
 READS_FILE = "reads.jsonl"
 """Files outside the run folder that the program has opened for reading, one JSON object per line."""
 MAX_READS = 100
-"""Further files are only counted."""
+"""Largest number of files that `READS_FILE` lists; further files are only counted."""
 
 
 LOG_FILE = "child.log"
@@ -346,7 +346,7 @@ _close = os.close
 """Saved before a program's `os` functions are replaced by ones that note what it opens."""
 _PART_BYTES = 1 << 20
 MAX_SUMMED_BYTES = 1 << 22
-"""A larger file has no checksum: its size and time tell whether it has changed."""
+"""Largest size in bytes of a file with a checksum; of a larger one, size and time tell whether it has changed."""
 
 
 def read_state(path: str) -> FileRead | None:

@@ -61,7 +61,7 @@ class NewRun:
     lock_fd: int = -1
     """The lock of the folder, see `side_files.hold`, which the process of the run inherits; -1 if it is over."""
     data: dict[str, Any] = field(default_factory=dict)
-    """The contents of its `run.json`."""
+    """The contents of the run's `run.json`."""
 
 
 class RunStore:

@@ -63,7 +63,7 @@ _LARGE_BYTES = 1 << 20
 _CHUNK_BYTES = 1 << 22
 """Bytes that are read and checked at a time: a file may claim, or seem to have, any length."""
 _KEPT_BYTES = 1 << 20
-"""The rows of no longer output stay in memory."""
+"""Largest size in bytes of an output whose rows stay in memory."""
 _STDOUT = Stream.STDOUT
 """Runs may print millions of rows, and an attribute of an enumeration is slow to reach."""
 _AGAIN_BYTES = 1 << 14

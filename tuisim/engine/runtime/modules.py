@@ -84,7 +84,7 @@ class OwnModules(PathFinder):
         self._run_folder, self._brick_folder = run_folder, brick_folder
         self._drops_annotations = drops_annotations
         self._missed: dict[str, int] = {}
-        """How often a name was not found after the first time, which is stored immediately."""
+        """How often each module was not found, by name, not counting the first time, which is stored immediately."""
         self._known: dict[str, list[OwnModule]] = {}
         for module in known:
             self._known.setdefault(module.name, []).append(module)

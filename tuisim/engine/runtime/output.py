@@ -24,11 +24,11 @@ _ADDRESS = re.compile(
 _FIRST = 0x7F0000000010
 _STEP = 0x10
 _LOWEST = 1 << 32 if sys.maxsize > 1 << 32 else 1 << 20
-"""Addresses are at least this, except those of the heap."""
+"""Lowest address outside the heap; a smaller number counts as an address only if it lies in the heap."""
 _TEXT_BEFORE = 200
-"""The name of an object's type is at most this far before its address."""
+"""Number of characters before an address in which the name of the object's type is looked for."""
 _MAX_SEARCHED = 20_000_000
-"""Number of objects that are searched in all, which takes a few real seconds."""
+"""Largest number of objects that are searched in a run, which takes a few real seconds."""
 _STEPS = 3
 _MOST_REACHED = 1_000
 """How far objects are followed from the program's names: number of steps, and of objects in each step."""

@@ -21,7 +21,7 @@ from tuisim.engine.runtime.session import Deadlock, Session, StopProgram
 from tuisim.engine.shim.waits import Wait, waits_for
 
 MEMORY_LIMIT_BYTES = 1 << 30
-"""Address space of the child; beyond it the program gets a MemoryError."""
+"""Limit of the child's address space, not counting stacks of threads; beyond it the program gets a MemoryError."""
 
 STACK_BYTES = 8 << 20
 """Stack of a thread. It uses memory only as needed."""
@@ -64,7 +64,7 @@ def refuse_processes() -> None:
 
 
 MAX_THREADS = 1000
-"""Each thread of a program is a real thread, and a machine limits their number."""
+"""Largest number of threads of a program at once: each is a real thread, and a machine limits their number."""
 FOREVER = -1
 """Stands for the end time of a wait without a limit."""
 

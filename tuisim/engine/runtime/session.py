@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 
 COMMANDS_AN_INSTANT = 100
 COMMAND_BURST_NS = 10 * MS
-"""The number of calls without a cost that together take some time, and that time."""
+"""Simulated time that passes once a program has made `COMMANDS_AN_INSTANT` calls without a cost at one instant."""
 
 REPEATED_WAIT_NS = 10 * NS_PER_S
 """Consecutive identical waits are combined into one of this length."""

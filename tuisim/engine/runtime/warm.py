@@ -27,7 +27,7 @@ from tuisim.engine.runtime.child import Child
 from tuisim.engine.runtime.run_config import parse_config
 
 LENGTH_BYTES = 4
-"""Each request begins with its length."""
+"""Size in bytes of the length with which each request begins."""
 MAX_FILES = 8
 _READ_BYTES = 1 << 16
 _NEEDED_LATER = (

@@ -46,7 +46,7 @@ _TMP_BYTES = 64 << 20
 MOST_FILES, MOST_BYTES = 20_000, 1 << 30
 """Files, and bytes in them, that a program may add to its folders; see `Quota`."""
 _MEMORY_BYTES = 2 << 30
-"""Address space of its process; at half of that, the program gets a MemoryError."""
+"""Limit of the address space of an isolated program's process; at half of it, the program gets a MemoryError."""
 _OPEN_FILES = 256
 LIMITS = f"""\
 import resource

@@ -95,7 +95,7 @@ MAX_TEMPLATES = 4
 MAX_ID_GAP = 32
 """Up to this many process ids are tried one by one: listing all processes of the machine takes longer."""
 FILE_LOCKS = 10
-"""Number of a limit that every process inherits on Linux, and that is unused since 2.4.25."""
+"""Number of the resource limit `RLIMIT_LOCKS`, which every process inherits, and which Linux ignores since 2.4.25."""
 
 STACK_WRITTEN_WITHIN_S = 0.5
 STACK_AWAITED_S = 1.0
@@ -120,7 +120,7 @@ class _Starts:
     """The templates, by what each is prepared for; the one that was used last comes last."""
     count = 0
     lock: ClassVar = threading.RLock()
-    """Lock for reading and changing these: threads of an app may start runs at the same time."""
+    """Lock for reading and changing the fields of this class: threads of an app may start runs at the same time."""
 
 
 def start_warm_process() -> None:
