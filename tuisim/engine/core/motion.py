@@ -61,7 +61,7 @@ ROOM_TICKS = 256
 """Number of records beyond the current ones for which space is requested from the sink."""
 
 CHECK_TICKS = 4
-"""The way that is free of obstacles is computed for at least this many ticks ahead, if that many are left to run."""
+"""Obstacles are checked again when the way known to be free is shorter than the robot's way in this many ticks."""
 
 MAX_SINGLE_TICKS = 3
 """Up to this number of ticks are run one by one: for so few, setting up a tight loop costs more than it saves."""

@@ -213,8 +213,7 @@ class ProfileSpec(Spec):
         source="measured on a brick (pybricks/support, issue 14): ev3: old values up to 18 ms after the change, "
         "new ones from 22 ms on; the course, the old simulator: none",
     )
-    """For so long after a change to a mode, a colour sensor still returns the values it last had in this new mode; 0:
-    never."""
+    """After a change of mode, for this time a colour sensor still returns the last values of the new mode."""
     white_percent: float = number(
         50,
         100,

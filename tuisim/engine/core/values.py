@@ -19,7 +19,7 @@ from typing import Any, ClassVar
 from tuisim.base.errors import closest, did_you_mean, nearest
 
 METADATA = "value"
-"""The key in a field's metadata under which its `Value` is."""
+"""The key in the metadata of a dataclass field under which the field's `Value` is stored."""
 
 _SHORT = reprlib.Repr()
 _SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 60
@@ -40,7 +40,7 @@ class WrongValue(ValueError):  # noqa: N818  # the name says what it is
         self.message = message
         self.hint = hint
         self.part = part
-        """Which part of the value is wrong, such as `[2]`; empty for the whole of it."""
+        """The part of the value that is wrong, such as `[2]`; empty if the whole value is wrong."""
 
 
 def quote(value: object) -> str:

@@ -90,7 +90,7 @@ class MotorDriver:
         self._control: Controller | None = None
         """The active controller."""
         self._moved_ns = 0
-        """Time up to which the axle has been moved."""
+        """Time in ns up to which the axle's motion has been computed."""
         self._raw = self._offset = 0
         self.position = self.speed_dps = 0
         """Position in degrees and speed in degrees per second, as the last step of the control read them."""

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 PER_PERCENT = 100
 MAX_WINDOW_MS = 300
-"""The longest time over which a speed is averaged."""
+"""The longest time over which the speed of a motor is averaged."""
 HALVES_PER_DEG = 2 * MILLI * COUNTS_PER_DEG
 """Positions are kept in half thousandths of a count: a drive base divides a sum of counts by two."""
 
