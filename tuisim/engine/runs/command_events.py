@@ -57,7 +57,7 @@ _BASE_AIMS = (Aim.BASE_SPEED, Aim.BASE_WAY)
 
 
 ScaleChange: TypeAlias = tuple[int, str, float]
-"""A tick, a motor's port, and the degrees that a program counts from then on for each degree of the motor."""
+"""A tick, a motor's port, and the degrees that a program counts from then on per degree of the motor (at first, 1)."""
 
 
 class CommandedRun(Protocol):

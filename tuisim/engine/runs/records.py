@@ -113,7 +113,7 @@ MAX_OUTPUT_BYTES = 256 << 20
 """A run that prints more than this is stopped."""
 MAX_OUTPUT_ROWS = 1_000_000
 MAX_ROWS_PER_S = 1_000
-"""A run with more rows than these two allow together is stopped: each row costs its readers time and memory."""
+"""A run may print the first number of rows, plus the second for each simulated second; with more, it is stopped."""
 _NS_PER_ROW = 1_000_000_000 // MAX_ROWS_PER_S
 
 

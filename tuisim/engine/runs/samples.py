@@ -28,7 +28,7 @@ _NEAR_SAMPLE = re.compile(
 )
 """A name of several words, a number with a comma, or a unit behind it; also most samples."""
 _MAX_ROWS_READ = 10_000
-"""Rows among which such a line is looked for: a program may print millions."""
+"""Largest number of rows in which a line that is nearly a sample is looked for: a program may print millions."""
 
 
 @dataclass(frozen=True, slots=True)

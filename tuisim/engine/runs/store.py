@@ -45,7 +45,7 @@ _MAY_CHANGE = (None, Unended.INTERRUPTED, Unended.DAMAGED)
 """Ends in the catalogue that are not final: a run file that seemed damaged may only have been unreadable for a
 moment."""
 _COUNT_AT_ONCE_BYTES = 1 << 20
-"""Longer outputs are counted later, so that the end of a run is not delayed."""
+"""Largest output in bytes whose samples are counted at the end of the run; a longer one delays the end, so it waits."""
 
 _COUNT_A_LISTING_BYTES = 8 << 20
 """Bytes of output in which samples are counted on each listing; the rest waits for the next listing."""

@@ -63,9 +63,9 @@ del resource, kind, most, hard
 """
 """Code that the process runs first: it sets limits that cannot be raised again."""
 _MAX_THREADS = 2_000
-"""Threads that a program may have: more than the simulation allows."""
+"""Largest number of threads of an isolated program: more than the simulation allows."""
 _MAX_SOCKETS = 512
-"""Sockets that a program may have: one without a descriptor still holds the data that was sent to it."""
+"""Largest number of sockets of a program: a socket without a descriptor still holds the data that was sent to it."""
 _SOCKETS_USED = "sockets: used "
 _LOOK_EVERY_S = 0.25
 _BLOCK_BYTES = 512

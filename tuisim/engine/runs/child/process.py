@@ -93,17 +93,17 @@ BOOT = (
 MAX_TEMPLATES = 4
 
 MAX_ID_GAP = 32
-"""Up to this many process ids are tried one by one: listing all processes of the machine takes longer."""
+"""If the newest process id is less than this above a child's, all ids between are tried: listing `/proc` is slow."""
 FILE_LOCKS = 10
 """Number of the resource limit `RLIMIT_LOCKS`, which every process inherits, and which Linux ignores since 2.4.25."""
 
 STACK_WRITTEN_WITHIN_S = 0.5
 STACK_AWAITED_S = 1.0
 LOOK_AGAIN_S = 0.003
-"""Time for a stuck child to write its stack; the same with its waits for a processor; interval of checks."""
+"""Time for a stuck child to write its stack, without and with its waits for a processor; interval of checks for it."""
 
 _DIGITS = 10
-"""A number of digits that no line number has."""
+"""A number with this many digits or more is no line number."""
 MAX_SHOWN = 500
 """Stacks contain at most this many characters of a file name."""
 
