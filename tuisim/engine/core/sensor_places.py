@@ -24,7 +24,7 @@ LOOKS: Mapping[str, tuple[float, float, float]] = {
     "back": (0.0, -100.0, 180.0),
     "middle": (0.0, 20.0, 0.0),
 }
-"""x, y and direction of a sensor that looks to a side, by that side."""
+"""x and y in mm, and direction in degrees, of a sensor that looks along the field, by its side of the robot."""
 DOWN: Mapping[str, tuple[float, float]] = {
     "middle": (0.0, 30.0),
     "front": (0.0, 60.0),
@@ -32,7 +32,7 @@ DOWN: Mapping[str, tuple[float, float]] = {
     "right": (50.0, 30.0),
     "back": (0.0, -60.0),
 }
-"""x and y of a colour sensor, by its side."""
+"""x and y in mm of a colour sensor, which looks down, by its side of the robot."""
 ORDERS: Mapping[type[SensorSpec], tuple[str, ...]] = {
     ColorSensorSpec: ("middle", "front", "left", "right"),
     UltrasonicSpec: ("front", "right", "left", "back"),
@@ -40,7 +40,7 @@ ORDERS: Mapping[type[SensorSpec], tuple[str, ...]] = {
     TouchSpec: ("left", "right", "back", "front"),
     GyroSpec: ("middle",),
 }
-"""Sides that sensors get one after another, unless something says the side."""
+"""Sides of the robot on which sensors of a class are placed, one after another, unless the side is given."""
 
 
 @dataclass(frozen=True, slots=True)

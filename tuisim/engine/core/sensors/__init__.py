@@ -51,9 +51,9 @@ class SensorKind:
     """Name of the kernel driver; `ev3dev2` searches for this name."""
     spec: type
     columns: Callable[[Any], tuple[Column, ...]]
-    """Takes a sensor's spec; returns its columns."""
+    """Takes a sensor's spec; returns the sensor's columns in telemetry."""
     measure: Callable[[Any, Instant, RunSpec, Field], tuple[float, ...]]
-    """Takes spec and instant; returns the values of those columns that are measured."""
+    """Takes a sensor's spec, an instant, the run's spec and the field; returns the values of the measured columns."""
     port_mode: str = "ev3-uart"
     """The port mode that the sensor needs; `ev3-analog` for a sensor without a processor of its own."""
 
@@ -73,7 +73,7 @@ SENSORS: Mapping[str, SensorKind] = {
 
 
 Measure = Callable[[Instant, RunSpec, Field], tuple[float, ...]]
-"""Returns the values of the columns of an owner that are measured."""
+"""Takes the instant, the run's spec and the field; returns the values of an owner's measured columns."""
 
 
 def list_owners(run: RunSpec) -> list[tuple[tuple[Column, ...], Measure]]:

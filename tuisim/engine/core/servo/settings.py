@@ -22,7 +22,7 @@ STEPS = 250
 FULL_ACTUATION = 10_000
 """Full power, in hundredths of a percent."""
 PAUSE_MARGIN_MS = 12
-"""A controller gives up following this long before its power is used up: two turns of the firmware's loop."""
+"""A controller leaves its trajectory so long before its power is used up: two turns of the firmware's loop."""
 _ONE = 1 << 16
 
 
