@@ -207,7 +207,7 @@ _HINT = (
     "print REGEX, start or end"
 )
 _IN_FRONT = re.compile(r"^(back|first)\s+(.+)$", re.IGNORECASE)
-"""A direction in front of the other words."""
+"""A text in which `back` or `first` stands in front of the other words, not behind them."""
 _HAS_DIRECTION = re.compile(r"^(?:back|first)\s|\s(?:back|first)$", re.IGNORECASE)
 _LINE = re.compile(
     r"(?:(?:back|first)\s+)?line\s+([0-9]+)(?:\s+(?:back|first))*", re.IGNORECASE | re.ASCII

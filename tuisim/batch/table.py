@@ -37,7 +37,7 @@ STATISTICS = tuple(VariableStatistics.__dataclass_fields__)
 """The columns of a sample variable are `NAME_last`, `NAME_count` and so on."""
 
 MAX_GROUPS = 12
-"""A summary of more groups has one line for each column."""
+"""With more combinations of parameter values, a summary has the statistics of all runs together."""
 
 _DOTTED = re.compile(r"`[^`]*`|\b[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+\b")
 

@@ -21,7 +21,7 @@ _PANELS = "world, chart, arrays"
 _MIN_CHARTED_PX = 360
 """A lower picture has no room for a chart whose labels can be read."""
 _FAST_S = 60
-"""A longer run is shown faster, unless the speed is given."""
+"""A movie of a longer simulated time, in s, is sped up to last at most this long, unless the speed is given."""
 
 _run = argument("word", "RUN", lambda: ("last",))
 _panels = option(

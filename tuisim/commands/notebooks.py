@@ -92,7 +92,7 @@ class NotRun:
     """A program or notebook in a folder that cannot be run, with the reason."""
 
     label: str
-    """Its name in the table."""
+    """Name of the program or notebook in the table and in messages."""
     error: ConfigError
 
     def report(self, *, as_json: bool) -> None:

@@ -32,7 +32,7 @@ class RelayInterrupts:
 
     def __init__(self) -> None:
         self.exit_code = 0
-        """128 + the signal's number; 0 if there was none."""
+        """128 + the number of the signal that has arrived; 0 while none has."""
         self._handle: RunHandle | None = None
 
     def watch(self, handle: RunHandle) -> None:
@@ -70,7 +70,7 @@ class Follower:
     tell: Callable[[RunHandle], None] = lambda _: None
     """Called at each poll, to show progress."""
     cut: int = 0
-    """The exit code for a closed stdout, else 0."""
+    """The exit code `EXIT_BROKEN_PIPE` once stdout is found closed, else 0."""
     lost: str = ""
     """Why printed lines could not be written; empty if they were."""
 

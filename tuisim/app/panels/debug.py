@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 _INFO = PANELS["debug"]
 _FRAME = 4
-"""Columns at both ends of a border that words in it leave free."""
+"""Columns of a border, at its two ends together, that the words in it cannot take."""
 
 
 class Debug(LinesPanel, can_focus=True):

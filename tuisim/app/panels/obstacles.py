@@ -29,7 +29,7 @@ Boxes: TypeAlias = tuple[Obstacle, ...]
 _FIELDS = {"x_mm": "X", "y_mm": "Y", "width_mm": "W", "height_mm": "H"}
 _NEW_SIZE_MM = 200.0
 _GAP_MM = 20.0
-"""Between new obstacles."""
+"""The distance that new obstacles keep from each other."""
 _NONE = "none: + or drag adds one"
 
 

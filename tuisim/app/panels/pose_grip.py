@@ -22,7 +22,7 @@ class PoseGrip:
     y_mm: float
     turns: bool
     on_floor: bool
-    """Whether it may lead off the field."""
+    """Whether the drag may move the robot off the field, onto the floor around it."""
 
     def drag_pose(self, x_mm: float, y_mm: float) -> Pose:
         """Return the pose of the robot after a drag to a point of the field, in whole mm and degrees.

@@ -43,7 +43,7 @@ class Settings(VerticalScroll, can_focus=False):
         edit: FormField
         text: str
         by: int
-        """Steps to another choice, from the one that is current when the message arrives."""
+        """Number of steps from the choice that is current when the message arrives; 0 sets `text` instead."""
 
         def apply(self, plan: NextRun) -> NextRun:
             """Return a plan with the new value of the field.

@@ -17,7 +17,7 @@ from tuisim.terminal.text_runs import escape_markup
 _PREDEFINED = re.compile(r"^(\w+) = ColorSensor\(INPUT_(\d)\)$", re.MULTILINE)
 """A line of a prelude that makes a colour sensor: its name and its port."""
 _FRAME = 4
-"""Columns of the edge beside a title."""
+"""Columns of a panel's upper edge that its title cannot take."""
 
 
 def build_title(app: App[Any], panel: str, name: str = "") -> str:

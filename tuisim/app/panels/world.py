@@ -50,7 +50,7 @@ _PAPER = (255, 255, 255)
 _ANY_PEN = PenSpec()
 
 _FRAME = 4
-"""Cells of the frame beside its words."""
+"""Columns of the panel's frame that the words in it cannot take."""
 
 _SHOWS_UNTIL_TAKEN = 10
 """Number of updates after which a dropped robot that was not accepted jumps back."""
