@@ -8,7 +8,7 @@ from dataclasses import field
 from pathlib import Path
 from typing import Annotated, Any
 
-from msgspec import UNSET, Meta, Struct, UnsetType
+from msgspec import Meta, Struct
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError
@@ -29,15 +29,15 @@ class _BatchTable(Struct):
     The values of keys of type `Any` are checked later, by the functions that use them.
     """
 
-    program: str | list[str] | UnsetType = UNSET
-    world: str | UnsetType = UNSET
-    seeds: Any = UNSET
-    set: Any = UNSET
-    jobs: Annotated[int, Meta(ge=1, le=MAX_JOBS)] | UnsetType = UNSET
-    out: str | UnsetType = UNSET
-    expressions: Any = UNSET
-    goals: str | UnsetType = UNSET
-    keep: Keep | UnsetType = UNSET
+    program: str | list[str] | None = None
+    world: str | None = None
+    seeds: Any = None
+    set: Any = None
+    jobs: Annotated[int, Meta(ge=1, le=MAX_JOBS)] | None = None
+    out: str | None = None
+    expressions: Any = None
+    goals: str | None = None
+    keep: Keep | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +75,7 @@ def load_batch(path: Path, mats: str | None = None) -> BatchFile:
     table = files.convert(data.pop(BATCH_KEY), _BatchTable, location)
     folder = path.parent
     world = None
-    if table.world is not UNSET:
+    if table.world is not None:
         if data:
             raise location.at("world").wrong(
                 f"cannot be combined with {', '.join(data)}", "give a world file, or its keys"
@@ -84,9 +84,7 @@ def load_batch(path: Path, mats: str | None = None) -> BatchFile:
             world = WorldFile.load(folder / table.world, mats)
     elif data:
         world = parse_world(data, path, mats)
-    programs = [] if table.program is UNSET else table.program
-    if isinstance(programs, str):
-        programs = [programs]
+    programs = [table.program] if isinstance(table.program, str) else table.program or []
     if len(programs) > MAX_PROGRAMS:
         raise location.at("program").wrong(
             f"has {len(programs)} programs", f"at most {MAX_PROGRAMS}"
@@ -96,12 +94,12 @@ def load_batch(path: Path, mats: str | None = None) -> BatchFile:
         tuple(_find_program_beside(folder, word) for word in programs),
         world,
         _parse_choices(table, location),
-        jobs=None if table.jobs is UNSET else table.jobs,
-        out=None if table.out is UNSET else str(folder / table.out),
-        goals=None if table.goals is UNSET else str(folder / table.goals),
-        keep=None if table.keep is UNSET else table.keep,
+        jobs=table.jobs,
+        out=None if table.out is None else str(folder / table.out),
+        goals=None if table.goals is None else str(folder / table.goals),
+        keep=table.keep,
         expressions={}
-        if table.expressions is UNSET
+        if table.expressions is None
         else _parse_expressions(table.expressions, location.at("expressions")),
     )
 
@@ -129,11 +127,11 @@ def _parse_expressions(data: object, location: Location) -> dict[str, str]:
 
 def _parse_choices(table: _BatchTable, location: Location) -> dict[str, Choice]:
     choices: dict[str, Choice] = {}
-    if table.set is not UNSET:
+    if table.set is not None:
         place = location.at("set")
         for name, values in _flatten_table(files.table(table.set, place)).items():
             choices[name] = _parse_choice(values, place.at(name))
-    if table.seeds is not UNSET:
+    if table.seeds is not None:
         place = location.at("seeds")
         if SEED in choices:
             raise place.wrong(f"cannot be combined with set.{SEED}", f"give seeds or set.{SEED}")
