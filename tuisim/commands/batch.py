@@ -33,19 +33,12 @@ from tuisim.commands.listings import list_names
 from tuisim.engine.protocol import End
 from tuisim.logs.signals import QUANTILES
 from tuisim.settings.command_line import Arguments, command
-from tuisim.settings.options import APP, PANEL
 from tuisim.settings.shared_options import build_shared_options
 from tuisim.tasks.goals.judgement import GOAL
 
 if TYPE_CHECKING:
     import pandas as pd
 
-_SHARED = [
-    option
-    for option in build_shared_options(hidden=(APP, PANEL), names=list_names)
-    if option.name != "speed"
-]
-"""The shared options, except that of the speed, as a batch runs as fast as possible."""
 MAX_LINES = 100
 """A summary has at most this many lines."""
 _MAX_REASONS = 5
@@ -58,7 +51,8 @@ _ROUNDING = 1e-10
 
 @command(
     *OPTIONS,
-    *_SHARED,
+    # There is no speed, as a batch runs as fast as possible.
+    *build_shared_options(without_app=True, left_out=("speed",), names=list_names),
     passes_arguments=True,
     instead=dict.fromkeys(
         ("--picture", "--picture-of"),

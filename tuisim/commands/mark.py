@@ -45,8 +45,7 @@ from tuisim.engine.core.values import Whole
 from tuisim.engine.runs.child.isolation import MOST_BYTES, check_isolation
 from tuisim.logs.export import EXPORTERS, check_place, check_target
 from tuisim.settings.command_line import Arguments, WordType, argument, command, option
-from tuisim.settings.options import APP, PANEL, parse
-from tuisim.settings.shared_options import build_shared_options
+from tuisim.settings.shared_options import build_shared_options, build_type
 from tuisim.tasks.goals.files import GoalsFile
 from tuisim.tasks.marks.marking import GRADEBOOKS, Marking, MarkRequest
 from tuisim.tasks.marks.sheet import Sheet
@@ -93,7 +92,7 @@ _OPTIONS = (
         "max_mb",
         default=MOST_BYTES >> 20,
         metavar="MB",
-        type=WordType(lambda word: parse(_MEGABYTES, word, "--max-mb")),
+        type=build_type(_MEGABYTES, "--max-mb"),
         group=_RUNS,
         help=f"Do not run hand-ins that are larger ({MOST_BYTES >> 20}).",
     ),
@@ -166,11 +165,7 @@ _OPTIONS = (
 
 @command(
     *_OPTIONS,
-    *(
-        option
-        for option in build_shared_options(hidden=(APP, PANEL), names=list_names)
-        if option.name not in _LEFT_OUT
-    ),
+    *build_shared_options(without_app=True, left_out=_LEFT_OUT, names=list_names),
     help="""Mark the programs of a class.
 
     GOALS is a file with the goals of the task and its world. A FOLDER contains a file NAME.py or a folder for each

@@ -34,7 +34,6 @@ from tuisim.engine.runs.store import RunStore
 from tuisim.logs.export import EXPORTERS, check_targets, export_samples, export_telemetry
 from tuisim.settings.build import list_ineffective
 from tuisim.settings.command_line import Arguments, WordType, argument, choice, command, option
-from tuisim.settings.options import APP, PANEL
 from tuisim.settings.presses import press_actions
 from tuisim.settings.shared_options import build_shared_options
 from tuisim.settings.user_config import FILE, Section, UserConfig
@@ -114,7 +113,7 @@ _OPTIONS = (
 
 @command(
     *_OPTIONS,
-    *build_shared_options(hidden=(APP, PANEL), names=list_names),
+    *build_shared_options(without_app=True, names=list_names),
     passes_arguments=True,
     help="""Run programs without the app.
 

@@ -6,8 +6,8 @@ from typing import Any
 
 from tuisim.engine.core.values import Number, Whole
 from tuisim.engine.runs.handle import DEFAULT_TIME_LIMIT_S
-from tuisim.settings.command_line import GroupedOption, WordType, choice, option
-from tuisim.settings.options import parse
+from tuisim.settings.command_line import GroupedOption, choice, option
+from tuisim.settings.shared_options import build_type
 from tuisim.tasks.task import MAX_JOBS, Keep
 
 MAX_TIME_LIMIT_S = 1e6
@@ -22,7 +22,7 @@ def build_timeout_option(group: str, default_s: float = DEFAULT_TIME_LIMIT_S) ->
         default=default_s,
         metavar="S",
         group=group,
-        type=WordType(lambda text: parse(_LIMIT, text, "--timeout")),
+        type=build_type(_LIMIT, "--timeout"),
         help=f"Stop a run after this simulated time in seconds ({default_s:g}).",
     )
 
@@ -47,7 +47,7 @@ def build_workers_option(flag: str, text: str, **how: Any) -> GroupedOption:
         flag,
         default=0,
         metavar="N",
-        type=WordType(lambda word: parse(_WORKERS, word, flag)),
+        type=build_type(_WORKERS, flag),
         help=text,
         **how,
     )

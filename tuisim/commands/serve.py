@@ -9,8 +9,8 @@ from tuisim.base.errors import ConfigError
 from tuisim.commands.app import OPENED, read_opened
 from tuisim.commands.echo import echo, echo_error_lines
 from tuisim.engine.core.values import Number, Whole
-from tuisim.settings.command_line import Arguments, WordType, command, drop_options, option
-from tuisim.settings.options import parse
+from tuisim.settings.command_line import Arguments, command, drop_options, option
+from tuisim.settings.shared_options import build_type
 
 if TYPE_CHECKING:
     from tuisim.web.gate import Gate
@@ -30,7 +30,7 @@ _SERVER = (
         default=DEFAULT_PORT,
         metavar="N",
         group=_GROUP,
-        type=WordType(lambda text: parse(_PORT, text, "--port")),
+        type=build_type(_PORT, "--port"),
         help=f"Port; 0 for any free one ({DEFAULT_PORT}).",
     ),
     option(
@@ -38,7 +38,7 @@ _SERVER = (
         default=DEFAULT_VISITORS,
         metavar="N",
         group=_GROUP,
-        type=WordType(lambda text: parse(_VISITORS, text, "--max-visitors")),
+        type=build_type(_VISITORS, "--max-visitors"),
         help=f"Maximum number of apps at the same time ({DEFAULT_VISITORS}), including those that no tab shows.",
     ),
     option(
@@ -46,7 +46,7 @@ _SERVER = (
         default=DEFAULT_KEEP_MIN,
         metavar="MIN",
         group=_GROUP,
-        type=WordType(lambda text: parse(_MINUTES, text, "--keep")),
+        type=build_type(_MINUTES, "--keep"),
         help=f"End an app that no tab has shown for this many minutes ({DEFAULT_KEEP_MIN:g}); an unused one, after 1.",
     ),
     option(
@@ -54,7 +54,7 @@ _SERVER = (
         default=None,
         metavar="MIN",
         group=_GROUP,
-        type=WordType(lambda text: parse(_MINUTES, text, "--idle")),
+        type=build_type(_MINUTES, "--idle"),
         help="End the app of a visitor after this many minutes without input (never).",
     ),
     option(

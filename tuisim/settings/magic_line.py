@@ -21,8 +21,7 @@ from tuisim.settings.command_line import (
     parse,
 )
 from tuisim.settings.options import RESET_BY_MAT, RUN_VALUES
-from tuisim.settings.options import parse as parse_value
-from tuisim.settings.shared_options import build_shared_options
+from tuisim.settings.shared_options import build_shared_options, build_type
 
 MIN_HEIGHT_PX, MAX_HEIGHT_PX, DEFAULT_HEIGHT_PX = 200, 4000, 560
 MAX_INDEX = 1_000_000
@@ -102,7 +101,7 @@ def _build_command(magic: str) -> Command:
             flag_value=DEFAULT_REFRESH_S,
             default=DEFAULT_REFRESH_S,
             metavar="S",
-            type=_type(refresh, "-F"),
+            type=build_type(refresh, "-F"),
             group=group,
             help="Seconds between two redraws.",
         ),
@@ -138,7 +137,7 @@ def _build_app_options() -> list[GroupedOption]:
             default=DEFAULT_HEIGHT_PX,
             metavar="PX",
             group=group,
-            type=_type(Whole(MIN_HEIGHT_PX, MAX_HEIGHT_PX), "--height"),
+            type=build_type(Whole(MIN_HEIGHT_PX, MAX_HEIGHT_PX), "--height"),
             help=f"Height of the app in its cell ({DEFAULT_HEIGHT_PX}).",
         ),
         option(
@@ -188,11 +187,6 @@ def _split(line: str, magic: str) -> list[str]:
         raise ConfigError(f"cannot be split into words: {error}", key=f"%{magic}") from None
 
 
-def _type(value: Number, flag: str) -> WordType:
-    """Return the Click type of an option with a number as value; `flag` is the option's name, for errors."""
-    return WordType(lambda text: parse_value(value, text, flag))
-
-
 _ORIGIN = re.compile(r"https?://(?:[\w.-]+|\[[\da-fA-F:.]+\])(?::\d+)?", re.ASCII)
 
 
@@ -213,7 +207,11 @@ def _parse_corners(text: str) -> tuple[int, ...]:
 
 def _log_command(magic: str) -> Command:
     params = _build_common_options()
-    index = {"type": _type(Whole(-MAX_INDEX, MAX_INDEX), "--index"), "default": -1, "metavar": "N"}
+    index = {
+        "type": build_type(Whole(-MAX_INDEX, MAX_INDEX), "--index"),
+        "default": -1,
+        "metavar": "N",
+    }
     if magic == "sim_data":
         params.append(option("-c", "--clear", is_flag=True, help="Discard the logged data."))
     elif magic == "sim_robot_state":
@@ -228,7 +226,7 @@ def _log_command(magic: str) -> Command:
             option(
                 "-t",
                 "--threshold",
-                type=_type(Whole(0, 255), "--threshold"),
+                type=build_type(Whole(0, 255), "--threshold"),
                 default=127,
                 metavar="N",
                 help="The lightest grey that becomes black (127).",

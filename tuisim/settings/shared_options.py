@@ -8,11 +8,25 @@ from typing import Any
 
 import click
 
+from tuisim.engine.core.values import Value
 from tuisim.settings.command_line import Command, GroupedOption, WordType, parse
-from tuisim.settings.options import OPTIONS, Option
+from tuisim.settings.options import APP, OPTIONS, PANEL, Option
 from tuisim.settings.options import parse as parse_value
 
 Names = Callable[[str], Iterable[str]]
+
+
+def build_type(
+    value: Value, flag: str, names: Callable[[], Iterable[str]] | None = None
+) -> WordType:
+    """Return the Click type of an option with a value as it is described in `engine.core.values`.
+
+    Args:
+        value: The description of the value.
+        flag: The option's name, for errors.
+        names: As for `WordType`.
+    """
+    return WordType(lambda text: parse_value(value, text, flag), names)
 
 
 def _build_parameter(shared: Option, *, magic: bool, hidden: bool, names: Names) -> GroupedOption:
@@ -30,9 +44,8 @@ def _build_parameter(shared: Option, *, magic: bool, hidden: bool, names: Names)
         )
     if shared.constant is not None:
         return GroupedOption([*flags, name], flag_value=shared.constant, default=None, **how)
-    kind = WordType(
-        lambda text: parse_value(shared.value, text, shared.flags[0]),
-        lambda: shared.value.choices or names(shared.path),
+    kind = build_type(
+        shared.value, shared.flags[0], lambda: shared.value.choices or names(shared.path)
     )
     return GroupedOption(
         [*flags, name], type=kind, metavar=shared.metavar, multiple=shared.repeats, **how
@@ -40,18 +53,25 @@ def _build_parameter(shared: Option, *, magic: bool, hidden: bool, names: Names)
 
 
 def build_shared_options(
-    *, magic: bool = False, hidden: Iterable[str] = (), names: Names = lambda _: ()
+    *,
+    magic: bool = False,
+    without_app: bool = False,
+    left_out: Sequence[str] = (),
+    names: Names = lambda _: (),
 ) -> list[click.Parameter]:
     """Return the shared options as Click options.
 
     Args:
         magic: Whether they are for a magic line, not for the command line.
-        hidden: Groups of options that are accepted but not listed in the help.
+        without_app: Whether the options of the app are accepted but not listed in the help.
+        left_out: The paths of settings whose options are not among them.
         names: Returns the names that completion offers for an option, given the path of its setting.
     """
+    hidden = (APP, PANEL) if without_app else ()
     return [
         _build_parameter(option, magic=magic, hidden=option.group in hidden, names=names)
         for option in OPTIONS
+        if option.path not in left_out
     ]
 
 
