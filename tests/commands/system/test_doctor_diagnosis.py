@@ -52,7 +52,6 @@ JUDGED: dict[str, tuple[Finding, FindingState, str]] = {
     "no answer": (doctor.judge_latency(None), ADVICE, "--cells"),
     "slow": (doctor.judge_latency(0.3), ADVICE, "--fps"),
     "fast": (doctor.judge_latency(0.02), OK, ""),
-    "old Python": (doctor.judge_python((3, 10, 4), "python"), PROBLEM, "3.11"),
     "Windows": (doctor.judge_system("Windows", "11"), PROBLEM, "WSL"),
     "macOS": (doctor.judge_system("Darwin", "23"), ADVICE, "untested"),
     "home": (doctor.home_finding("home", "cannot be written"), PROBLEM, "TUISIM_HOME"),

@@ -33,7 +33,6 @@ COMFORTABLE = (80, 24)
 SLOW_S = 0.15
 """A user notices if the terminal takes longer to answer."""
 LARGE_STORE_MB = 2000
-OLDEST_PYTHON = (3, 11)
 
 
 class FindingState(StrEnum):
@@ -92,17 +91,16 @@ def judge_colors(depth: str, *, is_remote: bool, is_fixed: bool = False) -> Find
     """
     if depth == "truecolor":
         return Finding("colours", "truecolor (16 million)")
-    value = {"none": "none", "8": "8", "16": "16", "256": "256"}[depth]
     if is_fixed:
         return Finding(
             "colours",
-            f"{value}, as TERM or NO_COLOR says",
+            f"{depth}, as TERM or NO_COLOR says",
             FindingState.ADVICE,
             "--colors chooses another number",
         )
     sent = "; SSH does not send this variable by itself" if is_remote else ""
     advice = f"If the terminal shows more, as most do: export COLORTERM=truecolor{sent}"
-    return Finding("colours", value, FindingState.ADVICE, advice)
+    return Finding("colours", depth, FindingState.ADVICE, advice)
 
 
 _POINTS = {
@@ -202,16 +200,6 @@ def judge_latency(latency_s: float | None) -> Finding:
             "Slow link: --fps 5, --cells half and --pixels none send less",
         )
     return Finding("latency", value)
-
-
-def judge_python(version: tuple[int, ...], path: str) -> Finding:
-    """Return a finding on the version of Python."""
-    value = f"{'.'.join(map(str, version))} ({path})"
-    if version < OLDEST_PYTHON:
-        return Finding(
-            "Python", value, FindingState.PROBLEM, "Install tuisim with Python 3.11 or later"
-        )
-    return Finding("Python", value)
 
 
 def judge_system(system: str, release: str) -> Finding:
@@ -477,7 +465,7 @@ def _check_machine() -> list[Finding]:
     why_not = _explain_unwritable(home)
     findings = [
         judge_system(platform.system(), platform.release()),
-        judge_python(sys.version_info[:3], sys.executable),
+        Finding("Python", f"{'.'.join(map(str, sys.version_info[:3]))} ({sys.executable})"),
         home_finding(str(home), why_not),
         judge_assets(_explain_missing_assets()),
     ]
