@@ -26,7 +26,6 @@ from tuisim.commands.run_options import (
     keep_option,
 )
 from tuisim.engine import files
-from tuisim.engine.files import read_file
 from tuisim.engine.runs.handle import RunOptions
 from tuisim.logs.export import LISTED, check_target
 from tuisim.settings.command_line import Arguments, WordType, argument, option
@@ -121,10 +120,8 @@ def read_request(arguments: Arguments) -> Request:
     goals = GoalsFile.load(named) if named else None
     subjects = _prepare_subjects(arguments, file, goals)
     typed = _parse_choices(arguments)
-    free_choices = {name: choice for name, choice in file.choices.items() if name not in typed}
-    free_choices = {
-        name: choice for name, choice in free_choices.items() if name not in arguments.settings
-    }
+    decided = typed.keys() | arguments.settings.keys()
+    free_choices = {name: choice for name, choice in file.choices.items() if name not in decided}
     choices = {**free_choices, **typed}
     if SEED in choices:
         # The seed comes last and so varies fastest: runs that differ only in the seed follow each other.
@@ -167,13 +164,10 @@ def _choose_workers(arguments: Arguments, file: BatchFile) -> Workers:
 
 def _find_goals_world(arguments: Arguments) -> str | None:
     """Return the first world file in the arguments that has goals; None if there is none."""
-    words: list[str] = [
-        *filter(is_world_name, arguments.programs),
-        *filter(None, [arguments.world]),
-    ]
-    for word in words:
+    words: list[str | None] = [*filter(is_world_name, arguments.programs), arguments.world]
+    for word in filter(None, words):
         with suppress(ConfigError):
-            if "goal" in read_file(user_path(word), ConfigError):
+            if "goal" in files.read_file(user_path(word), ConfigError):
                 return word
     return None
 

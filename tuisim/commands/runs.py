@@ -90,20 +90,18 @@ def list_runs(as_json: bool) -> int:
     else:
         rows: list[tuple[object, ...]] = [
             (
-                *(
-                    run.number,
-                    run.created[:19].replace("T", " "),
-                    run.program,
-                    run.background,
-                    run.profile,
-                    run.seed,
-                ),
-                *(
-                    run.end,
-                    format_end(run.time_s or 0),
-                    "" if run.samples is None else str(run.samples),
-                ),
-                *(f"{size(count_bytes(store.folder(run.id))):>8}", _note(run), run.tags),
+                run.number,
+                run.created[:19].replace("T", " "),
+                run.program,
+                run.background,
+                run.profile,
+                run.seed,
+                run.end,
+                format_end(run.time_s or 0),
+                "" if run.samples is None else str(run.samples),
+                f"{size(count_bytes(store.folder(run.id))):>8}",
+                _note(run),
+                run.tags,
             )
             for run in runs
         ]
@@ -332,7 +330,7 @@ def format_diff(comparison: RunDiff) -> str:
 
 
 @command(
-    argument("words", "RUN…", lambda: ("last",), nargs=-1),
+    _runs,
     option(
         "--out",
         "files",
