@@ -25,7 +25,7 @@ from tuisim.tasks.execute import build_unjudged, build_unknown_result, execute
 from tuisim.tasks.task import Result, Task
 
 CHUNK = 4
-"""Tasks that a worker gets at once: to hand them over one by one costs as much as a short run."""
+"""Number of tasks that a worker gets at once: handing over a single task costs as much as a short run."""
 CHUNKS_AHEAD = 2
 """Chunks for each worker that are submitted in advance."""
 MAX_TRIES = 3

@@ -9,17 +9,17 @@ class CellSet(StrEnum):
     """A set of glyphs with which pictures are drawn, named by the points in a cell (columns × rows)."""
 
     HALF = "half"
-    """1 × 2"""
+    """1 × 2 points in a cell."""
     QUADRANT = "quadrant"
-    """2 × 2"""
+    """2 × 2 points in a cell."""
     SEXTANT = "sextant"
-    """2 × 3"""
+    """2 × 3 points in a cell."""
     OCTANT = "octant"
-    """2 × 4, Unicode 16"""
+    """2 × 4 points in a cell, with glyphs of Unicode 16."""
     BRAILLE = "braille"
-    """2 × 4, as dots"""
+    """2 × 4 points in a cell, as dots."""
     ASCII = "ascii"
-    """Letters and signs"""
+    """One letter or sign of ASCII for each cell."""
 
 
 BLOCKS = frozenset({CellSet.HALF, CellSet.QUADRANT, CellSet.SEXTANT, CellSet.OCTANT})

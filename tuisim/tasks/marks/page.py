@@ -18,7 +18,7 @@ from tuisim.tasks.marks.copies import MIN_TOKENS, Similar
 from tuisim.tasks.marks.sheet import Cell, Sheet, SheetRow
 
 _MIN_STUDENTS = 3
-"""Fewer have no statistics of points."""
+"""A class with fewer students gets no statistics of points."""
 MAX_REASONS = 3
 _NUMBER = re.compile(r"“[^”]*”|(?<![\w.])-?\d[\d,]*(?:\.\d+)?(?![\w.]*\w)")
 """A number in a reason, or a name in quotes, whose numbers are no measurements."""
@@ -35,11 +35,11 @@ class GoalStatistics:
 
     goal: Goal
     met: int
-    """Number of students who met it in each run."""
+    """Number of students who met the goal in each of their runs."""
     partly: int
-    """Number of students who met it in some runs."""
+    """Number of students who met the goal in some of their runs, but not in all."""
     mean: float
-    """Mean points."""
+    """Mean of the points that the students got for the goal."""
     reasons: tuple[tuple[str, int], ...]
     """The most frequent reasons of those who missed it, each with the number of students, see `group_reasons`."""
 

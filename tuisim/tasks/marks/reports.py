@@ -47,12 +47,12 @@ class Report:
     """See `TrialWorld.where`."""
     seed: int
     path: str
-    """Relative to the page."""
+    """The path of the report, relative to the page of the class."""
     run: StoredRun
     misses: tuple[Miss, ...]
     """Where the run missed goals; none if another run with the same record has listed them."""
     fault: str = ""
-    """Why the report could not be made; empty if it was."""
+    """Why the report could not be made; empty if it was made."""
 
 
 def write_reports(

@@ -29,7 +29,7 @@ from tuisim.tasks.task import Keep, Task
 STALL_LIMIT_S = 10.0
 """CPU seconds in one instant of simulated time after which a program counts as hung."""
 REAL_TIME_LIMIT_S = 120.0
-"""Real seconds of one run."""
+"""Real seconds after which a run is stopped."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +43,7 @@ class MarkPlan:
     """Without answers to `input()`, a run gets those of its world."""
     keep: Keep
     jobs: int = 0
-    """Number of workers; 0 is one for each processor."""
+    """Number of worker processes; 0 means one for each processor."""
     isolate: bool = False
     version: str = ""
     """Version of tuisim: an interrupted marking is resumed only with the same."""

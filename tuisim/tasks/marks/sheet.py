@@ -38,9 +38,9 @@ class Cell:
     points: float
     """Mean over the runs; NaN if one could not be judged."""
     met: int
-    """Number of runs that met it; of a goal that takes points off, that is the fault."""
+    """Number of runs that met the goal; if the goal takes points off, these are the runs with the fault."""
     reason: str = ""
-    """Why it was missed by the first run that missed it; empty if none did."""
+    """Why the first run that missed the goal missed it; empty if each run met it."""
     line: int = 0
     """The program's line that the reason is about; 0 if there is none."""
     seed: int = 0
@@ -87,7 +87,7 @@ class SheetRow:
     earned: float | None = None
     """The points that the runs have earned, if the tutor has set others."""
     comment: str = ""
-    """The tutor's."""
+    """The comment that the tutor has written for the student."""
     ids: Mapping[GradebookKind, str] = field(default_factory=dict)
     """How a gradebook names the student; see `Student.ids`."""
 

@@ -153,7 +153,7 @@ def _pick_character(kind: object, value: Any) -> str:
 
 
 STILL_S = 30.0
-"""Simulated seconds that a robot stands still."""
+"""Simulated seconds for which the program that only stands still waits."""
 
 
 class TrialRole(StrEnum):

@@ -39,7 +39,7 @@ _CALLS: Mapping[str, tuple[Call, ...]] = {
 _GO_ON = (Call.RUN_TO_REL_POS, Call.RUN_TO_ABS_POS, Call.RUN_TIMED)
 """Moves that go on after the end of the program."""
 _AT_ONCE_S = 0.1
-"""A move that is followed so soon by another one has hardly begun."""
+"""A move that another one follows within this time, in s, has hardly begun."""
 _DONE_SHARE = 0.8
 """A move of which this share is done is not cut off."""
 _MAX_COMMANDS = 10_000
@@ -53,7 +53,7 @@ _MAX_IDLE_SHARE = 0.1
 _SAME_SHARE = 0.3
 """Turns there and back that differ by less than this share were meant as a straight way."""
 _MIN_MOVE_S = 0.3
-"""A shorter move, or one that should be done in this time, is not missed."""
+"""Nobody misses a move that is cut off if it would have taken no longer than this, in s."""
 
 
 @dataclass(frozen=True, slots=True)

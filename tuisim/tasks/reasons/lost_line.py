@@ -28,17 +28,17 @@ if TYPE_CHECKING:
 MIN_READINGS = 3
 """The least number of readings of a sensor by a program that looks for something."""
 _MIN_CONTRAST_PC = 40.0
-"""Less difference between the darkest and the brightest reading is no line on its ground."""
+"""If the darkest and the brightest reading differ by less, in %, the sensor has seen no line."""
 _DARKER_PC = 5.0
-"""A sensor that reads so much less than the ground sees at least the edge of a line."""
+"""A sensor that reads less than the ground by this much, in %, sees at least the edge of a line."""
 _GROUND_SHARE = 0.25
 """Of what is brighter than the middle, so much may be darker than the ground: a line's edge, another colour."""
 _BLACK_PC = 25.0
 """A line that is darker than this is called black."""
 _MIN_DARK_SHARE = 0.25
-"""This share of the way over the line is a good part of it."""
+"""The robot follows a line if it is over it in at least this share of the ticks since it first came to it."""
 _MIN_RETURNS = 3
-"""So many returns to the line are several."""
+"""The robot follows a line if it comes back to it at least this often."""
 _MIN_GAP_S = 1.5
 _LONGER = 3.0
 """The least factor between the duration of a loss and the longest time beside the line before it."""
@@ -61,7 +61,7 @@ class LostLine:
     """A time in which a robot that followed a line did not see the line."""
 
     tick: int
-    """The last one at which a sensor saw the line."""
+    """The last tick at which a sensor saw the line."""
     sensor: str
     """The name of that sensor."""
     is_black: bool

@@ -26,11 +26,11 @@ _MIN_STALE_S = 0.5
 _OTHER_SHARE = 0.3
 """Moves that depend on a reading are wrong if the reading changes by this share."""
 _MIN_OTHER = 10.0
-"""The change of the reading must also be at least so large."""
+"""The reading must also change by at least this much, in its own unit."""
 _APART_S = 1.0
 """A line that reads more often is in a loop that asks again."""
 _SOON_S = 0.3
-"""A program that reads again so soon repeats its test."""
+"""A program that reads again within this time, in s, repeats its test."""
 _MIN_WAY_MM = 20.0
 _MIN_TURN_DEG = 10.0
 """A missing stop does no harm if the robot moves by less than this."""

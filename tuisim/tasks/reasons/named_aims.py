@@ -27,7 +27,7 @@ _STEP_MM = 4
 _RIM_MM = 60
 """A sensor of a robot so near to the edge may be off the mat."""
 _MIN_AHEAD_MM = 60
-"""A band that comes sooner is the one whose edge ended the loop."""
+"""A band that begins nearer than this ahead of the robot is the one whose edge ended the loop."""
 _MIN_ON_DEG = 90.0
 _MIN_SPIN_DEG = 60.0
 _MIN_TURN_DEG = 30.0

@@ -23,7 +23,7 @@ _MIN_READINGS = 20
 _MIN_WAY_MM = 200.0
 """The least distance that the robot must drive: before, it may not have come to another colour."""
 _SAME_LIGHT = 25
-"""A sensor whose channels change by less, of 255, sees the same."""
+"""A sensor sees the same colour as long as each channel, from 0 to 255, changes by less than this."""
 _MIN_WHITE_SHARE = 0.9
 """Darker than this share of white, light without a hue is grey."""
 

@@ -24,9 +24,9 @@ _MIN_WAY_MM = 5.0
 _MIN_TURN_DEG = 5.0
 """A program that is over earlier, with its robot nearer to the start, gave its motors no time."""
 _MAX_ABOVE = 2
-"""A remark that is so many lines above a loop is about it."""
+"""A remark belongs to a loop if it stands at most this many lines above it."""
 _FAR_CM = 100
-"""A limit of so many cm was probably meant in mm."""
+"""A limit of at least this many cm was probably meant in mm."""
 _NEAR = 1.0
 _AWAY = 5.0
 """Light that came so near to what was waited for, in percent, and went so far away again, was just missed."""

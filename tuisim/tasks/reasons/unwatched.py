@@ -23,11 +23,11 @@ if TYPE_CHECKING:
     Array = NDArray[Any]
 
 _MIN_SHARE = 0.95
-"""Wheels that turned less were stopped by something else."""
+"""Wheels that turned by less than this share of what was asked were stopped by something else."""
 _ROUND_DEG = 45.0
 """Turns of robots are usually multiples of this angle."""
 _NEAR_DEG = 3.0
-"""A turn that differs by no more from a multiple is intended."""
+"""A turn is intended if it differs by at most this much from a multiple of `_ROUND_DEG`."""
 
 
 def list_mistaken_turns(data: RunData) -> Iterator[Unmet]:

@@ -69,7 +69,7 @@ _ENDS = frozenset({End.TIME_LIMIT, End.STOPPED})
 _MIN_WAIT_S = 1.0
 """A run that is stopped after a shorter time has not waited in vain."""
 _MAX_POSES = 4000
-"""Distances are measured again at so many poses."""
+"""The most poses at which distances are measured again."""
 
 
 _MIN_PAUSE_S = 0.1
@@ -77,7 +77,7 @@ _PAUSES = 3
 """A program that has not read for this time, and for so many of its longest pauses, waits for something else."""
 _MAX_LINES = 64
 _SAME_HEADING_DEG = 2.0
-"""A robot that turns less is not turned by hand."""
+"""A robot whose heading changes by less than this is not turned by hand."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +87,7 @@ class Awaited:
     subject: Subject
     port: str
     times: int
-    """How often it was read."""
+    """Number of readings."""
     since_s: float
     """When it was first read."""
     line: int

@@ -39,7 +39,7 @@ _SHORT_PRESS_S = 0.1
 _MOVED_MM = 50.0
 """A robot that got no farther between the first and the last reading looks at the same place."""
 _TURNED_DEG = 45.0
-"""One that turned farther than this is meant to move."""
+"""A robot that turned farther than this between two readings is meant to move."""
 
 
 @dataclass(frozen=True, slots=True)

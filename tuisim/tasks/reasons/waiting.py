@@ -25,7 +25,7 @@ class WaitWatch:
     def __init__(self) -> None:
         self._run_id = ""
         self._next_tick = 0
-        """When to look next."""
+        """The tick at which the search looks next."""
         self._has_told = False
 
     def look(
