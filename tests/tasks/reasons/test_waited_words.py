@@ -302,6 +302,12 @@ MEASURED = {
         "from 0.01 s on, line 4 waited for us on in1 to read 0.2 cm or less: it stayed "
         "at 116.1; at a wall it reads 3 cm, never less",
     ),
+    "away from a wall": (
+        f"{ULTRASONIC}from ev3dev2.motor import *\nMoveTank(OUTPUT_A, OUTPUT_B).on(-30, -30)\n"
+        "while us.distance_centimeters > 20: pass",
+        "from 0.01 s on, line 5 waited for us on in1 to read 20 cm or less: it went from 116.1 to "
+        "222.2, the other way; turn the signs of the speeds round",
+    ),
     "the way is not free": (
         f"{ULTRASONIC}while us.distance_centimeters < 250: pass",
         "from 0.01 s on, line 3 waited for us on in1 to read 250 cm or more: it stayed",

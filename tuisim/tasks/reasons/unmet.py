@@ -39,6 +39,9 @@ _WORDS = {
     "!=": "anything but {}",
 }
 
+AWAY = "the other way"
+"""The end of a text on readings of which the first one came nearest to what was waited for."""
+
 
 @dataclass(frozen=True, slots=True)
 class Unmet:
@@ -315,7 +318,7 @@ def _name_nearest(loop: LoopEnd, series: Series, hz: int) -> str:
         return f"{round_value(values[nearest])} at {series.ticks[nearest] / hz:.2f} s came nearest"
     if values[-1] == values[0]:
         return f"it stayed at {round_value(values[0])}"
-    return f"it went from {round_value(values[0])} to {round_value(values[-1])}, the other way"
+    return f"it went from {round_value(values[0])} to {round_value(values[-1])}, {AWAY}"
 
 
 def _find_miss(data: RunData, loop: LoopEnd, series: Series) -> Unmet | None:

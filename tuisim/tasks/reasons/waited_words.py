@@ -21,7 +21,7 @@ from tuisim.tasks.reasons.blank_mat import GIVES_LINE
 from tuisim.tasks.reasons.hand_presses import find_hits
 from tuisim.tasks.reasons.run_data import RunData, describe_place
 from tuisim.tasks.reasons.subjects import SEEN, Subject
-from tuisim.tasks.reasons.unmet import Unmet, find_unmet
+from tuisim.tasks.reasons.unmet import AWAY, Unmet, find_unmet
 from tuisim.tasks.reasons.waited import Awaited, find_awaited, find_sensor
 
 COLORED_MAT = "Rainbow_bands"
@@ -76,6 +76,11 @@ def find_waits(data: RunData) -> list[Wait]:
     for awaited in all_awaited:
         remedy = name_remedy(awaited, run.spec, run.live)
         if unmet and unmet.line == awaited.line:
+            if unmet.text.endswith(AWAY) and awaited.subject in (
+                Subject.DISTANCE,
+                Subject.PROXIMITY,
+            ):
+                remedy = "turn the signs of the speeds round"
             waits.append(_describe_unmet(verb, unmet, f"; {remedy}", awaited.subject))
             continue
         name = data.sensor_names.get(awaited.port, "")
