@@ -45,7 +45,7 @@ class ResilientOutput:
     def __init__(self, file: TextIO) -> None:
         self._file = file
         self.gone = False
-        """Whether a write has failed; later output is dropped."""
+        """Whether a write to the terminal has failed; later output is dropped."""
 
     def write(self, text: str) -> int:
         """Write a text, and return its length; if the terminal is lost, drop the text."""

@@ -15,7 +15,7 @@ Cells = npt.NDArray[np.int64]
 bits 24 to 47, that of the others in bits 0 to 23, each 0xRRGGBB."""
 
 _FLAT = 3
-"""Points whose channels differ by no more than this are one colour."""
+"""A cell whose points differ by no more than this in each channel, of 255, is drawn in one colour."""
 _OTHER = 1e9
 """Added to the distance of a point of the other group; more than any distance."""
 _DARKER = 0.01

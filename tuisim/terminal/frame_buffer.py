@@ -39,7 +39,7 @@ _SEEN_ON_BLANKS = frozenset({"4", "7", "9", "21", "51", "52", "53"})
 """Attributes that are visible on a blank: underline, reverse, strike, frame, overline."""
 _UPPER_HALF = "▀"
 _REWRITTEN = 4
-"""Rewriting this many unchanged characters costs no more than a jump over them."""
+"""Up to this many unchanged characters between two changes are written again: a jump costs no fewer bytes."""
 
 
 _SYSTEMS = {
@@ -288,7 +288,7 @@ def _strip_colors(attributes: tuple[str, ...], style: Style) -> tuple[str, ...]:
 
 
 _SEEN_ON_BLACK = 120
-"""Text and lines whose channels add up to more are not black."""
+"""With eight colours, text and lines whose channels (0 to 255) add up to more than this are not drawn black."""
 
 
 def _build_color_codes(color: Color | None, depth: int) -> tuple[str, str]:

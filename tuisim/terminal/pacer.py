@@ -57,23 +57,25 @@ class Throttle:
 
 
 PATIENCE_S = 1.0
-"""Longest time for an answer, besides the time for the data sent before it."""
+"""The longest time to wait for a terminal's answer, besides the time that the data sent before the query takes."""
 SLOWEST_BYTES_S = 4_000.0
-"""Assumed bandwidth of the slowest line."""
+"""Assumed bandwidth of the slowest link to a terminal, in bytes per second."""
 PROOF_S = 10.0
 """A terminal that has not answered after this time, besides the time for the first paint, is assumed never to answer.
 """
 UNPROVEN_GAP_S = 0.5
-"""Time between two frames until the terminal has first answered."""
+"""The least time between two frames while the terminal has not yet answered any query."""
 PAGE_QUEUED_S = 0.5
-"""A page answers late because it is busy drawing, and glyphs are no less work for it than pixels."""
+"""The link to a browser's page counts as slow only when a frame waits longer than this: a page that is busy drawing
+answers late, and glyphs are no less work for it than pixels.
+"""
 MAX_ON_THE_WAY = 3
 _REMEMBERED = 8
-"""Most unanswered queries that are remembered."""
+"""The most unanswered queries that are remembered; a further one displaces the oldest."""
 FULL_BYTES = 3_000
 """While more than this is in transit, no frame is drawn, whatever the latency: a quarter of a second at 128 kbit/s."""
 LARGE_BYTES = 1_500
-"""After this many bytes the terminal is queried even if they are no frame, such as a dialog."""
+"""After this many bytes without a query the terminal is queried, even if no frame was among them, but a dialog was."""
 
 
 SLOW_S = 2.0
@@ -104,11 +106,11 @@ class Pacer:
         self.asks = asks
         self._clock = clock
         self._asked: deque[tuple[float, int]] = deque(maxlen=_REMEMBERED)
-        """When each unanswered query was sent, and the bytes since the query before."""
+        """When each unanswered query was sent, and how many bytes were sent between the query before and this one."""
         self._heard_s = 0.0
-        """When the last answer arrived, or when a query was sent while none was open."""
+        """When the last answer arrived, or a query was sent while no other was unanswered; the later of both."""
         self._proof_s: float | None = None
-        """When a terminal without an answer is assumed never to answer."""
+        """When a terminal that has not yet answered is assumed never to answer; None before the first query."""
         self._loose_bytes = 0
         """Bytes sent since the last query."""
         self._frame_is_new = False
@@ -118,7 +120,7 @@ class Pacer:
         self._queued_s: float | None = None
         """When a frame was last found to have queued on the link."""
         self._slow_s = SLOW_S
-        """Seconds for which the link counts as slow after that."""
+        """Seconds for which the link counts as slow after a frame has queued."""
         self._begun_s = 0.0
         """When the terminal or page that shows the app now first answered; earlier queries waited for it to begin."""
         self.answers = False

@@ -32,7 +32,7 @@ class Graphics:
     in_tmux: bool = False
     """Whether tmux has to pass codes on."""
     most_points: int = MAX_POINTS
-    """Most points of a picture across a cell."""
+    """The most points of a picture across a cell; larger cells get larger points."""
 
     @property
     def scale(self) -> int:
@@ -361,11 +361,11 @@ _NEVER = -1
 """The version of a tile that the terminal does not have."""
 _COUNT = count()
 _MAX_PICTURES, _MAX_IMAGES = 255, 1 << 16
-"""Numbers of images have 24 bits; each picture has its own."""
+"""Pictures that have image numbers of their own, and numbers for each: the number of an image has 24 bits."""
 _MAX_TILES = 256
-"""Most tiles in a row."""
+"""The most tiles in a row of a picture, for which each row has image numbers."""
 _JOIN_CELLS = 6
-"""Rectangles are joined if at most this many unchanged cells come with it: each costs some codes of its own."""
+"""Two rectangles of changed cells are drawn as one if that adds at most this many cells: each rectangle costs codes."""
 
 
 def _fill_tiles(changed: Mask) -> Mask:

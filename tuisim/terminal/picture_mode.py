@@ -189,7 +189,7 @@ class TerminalReport:
     cells: CellSet
     """The finest set of glyphs that the terminal is known to show."""
     is_limited: bool
-    """Whether TERM alone limits that set."""
+    """Whether TERM alone limits `cells`."""
     protocol: str
     """Protocol with which pixels are drawn; empty if none are."""
     is_asked: bool

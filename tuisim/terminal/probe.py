@@ -34,7 +34,7 @@ from tuisim.terminal.queries import (
 )
 
 ANSWER_S = 0.4
-"""Longest time to wait for an answer."""
+"""The longest time to wait for a terminal's answer."""
 _OCTANT = "\U0001cd02"
 WIDTH_QUERY = f"\r{_OCTANT}\x1b[6n"
 """Prints an octant at the left edge and asks for the position of the cursor."""
@@ -43,7 +43,7 @@ _POSITION = re.compile(rb"\x1b\[\d+;(\d+)R")
 _NAME_AND_VERSION = re.compile(r"([A-Za-z0-9]+)[ (/-]*v?([\d.-]*)")
 
 _PLAIN = ("", "dumb", "unknown")
-"""Kinds of terminals that nothing is known about."""
+"""Values of TERM that tell nothing about the terminal."""
 
 Version = tuple[int, ...]
 
@@ -346,7 +346,7 @@ def _ask_terminal() -> CellSet:
 
 
 _typed: list[bytes] = []
-"""Input that was read among the answers, and is no answer."""
+"""What the user typed while the terminal was asked: input that was read together with the answers."""
 
 
 def take_typed() -> str:

@@ -161,7 +161,7 @@ class AnswerParser(XTermParser):
     """Textual's parser of the terminal's input, which also reads answers that Textual would take for key presses."""
 
     is_asked: ClassVar[bool] = False
-    """Whether a terminal that has answered before was asked again."""
+    """Whether a terminal that has answered before was asked again, and has not answered since."""
 
     def __init__(self, debug: bool = False) -> None:
         super().__init__(debug)

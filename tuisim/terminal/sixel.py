@@ -11,17 +11,17 @@ import numpy.typing as npt
 from tuisim.terminal.pixels import Pixels, unpack_rgb
 
 BAND_PX = 6
-"""A character stands for this many pixels, one below the other."""
+"""A character of sixel data stands for this many pixels, one below the other."""
 MAX_COLORS = 256
 """Number of colours that every terminal with sixel supports."""
 PERCENT = 100
-"""Largest value of a colour channel."""
+"""Largest value of a colour channel in sixel codes."""
 _BEGIN = "\x1bP0;1q"
 _END = "\x1b\\"
-"""The beginning says that pixels that are not drawn keep their colour."""
+"""`_BEGIN` and `_END` enclose a sixel picture; `_BEGIN` says that pixels that are not drawn keep their colour."""
 _FIRST_CHARACTER = 63
 _SHORT_RUN = 3
-"""A run of more equal characters than this is shorter as a number."""
+"""A run of more equal characters than this is sent as their number and one of them, which is shorter."""
 
 
 def encode(picture: Pixels) -> str:

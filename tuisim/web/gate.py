@@ -23,11 +23,11 @@ from aiohttp import web
 from tuisim.base.data_class import dataclass
 
 STRANGER_S = 5.0
-"""Time for a new connection to send a request that has the token."""
+"""A new connection that has not sent a request with the server's token after this time is closed."""
 MAX_STRANGERS = 64
-"""The most connections without such a request; if there are more, the oldest one is closed."""
+"""The most connections that have not yet sent the token; while there are more, the oldest of these is closed."""
 _NOT_YET_S = 0.1
-"""After this time, an accepted connection has its transport."""
+"""Time after which closing a connection is tried again if the connection has no transport yet."""
 _TOLD_EVERY_S = 60.0
 _NO_ROOM = (errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM)
 

@@ -10,7 +10,7 @@ from aiohttp import WSCloseCode, web
 TAKEN_OVER = 4001
 """The code with which a socket is closed because another browser shows the app."""
 _MAX_WAITING = 20
-"""The largest number of messages that are kept for a browser."""
+"""The most messages of an app that are kept while no browser shows it; for a further one, the oldest is dropped."""
 _MAX_REASON_BYTES = 123
 """The most bytes that the closing message of a socket can have."""
 _Data = TypeVar("_Data")

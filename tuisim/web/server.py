@@ -147,9 +147,9 @@ class ServerLimits:
     """Limits of a server: how many apps may run, and for how long."""
 
     visitors: int
-    """Most apps at the same time, with those that no tab shows now."""
+    """The most apps at the same time, including those that no browser tab shows now; further visitors are refused."""
     visit: VisitLimits = VisitLimits()
-    """How long each lasts."""
+    """How long each visitor's app can last without use or without a browser."""
 
 
 class Server:

@@ -25,7 +25,7 @@ _HEAD = b"__GANGLION__\n"
 _MAX_ERROR_BYTES = 4096
 _MAX_PACKET_BYTES = 32 << 20
 _MAX_MESSAGE_BYTES = 64 << 10
-"""A longer message of an app is dropped: some wait for a browser."""
+"""A longer message of an app is dropped, as messages take memory while they wait for a browser."""
 _TERMINAL_VARIABLES = (
     "LC_ALL",
     "TMUX",
@@ -93,7 +93,7 @@ class WebSession(AppService):
         self.told: Callable[[Mapping[str, Any]], None] = lambda _: None
         """Called with each message of the app."""
         self.errors = ""
-        """The last that the app has written to stderr, once it has ended."""
+        """The end of what the app has written to stderr; empty until the app has ended."""
 
     def _build_environment(self, width: int = 80, height: int = 24) -> dict[str, str]:
         environment = super()._build_environment(width, height).items()

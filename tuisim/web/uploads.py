@@ -13,9 +13,9 @@ from typing import IO
 from tuisim.base.errors import ConfigError
 
 MAX_FILE_BYTES = 64 << 20
-"""The largest file that a visitor can bring."""
+"""The size of the largest file that a visitor can bring."""
 MAX_BYTES = 1 << 30
-"""All files together, while a server runs."""
+"""The most bytes of all files together that visitors can bring while a server runs."""
 _MAX_NAME_BYTES = 200
 _PIECE = 1 << 20
 

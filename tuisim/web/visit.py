@@ -20,7 +20,7 @@ from tuisim.web.link import Link, close
 from tuisim.web.session import WebSession
 
 _LONGEST_S = 86400.0
-"""The longest time for which a timer is set."""
+"""The longest time for which a timer is set; a longer limit is waited for in several steps, or cut to this."""
 _LARGEST_SIZE = 1000
 _MAX_PANELS, _MAX_NAME, _MAX_PROGRAM = 50, 50, 80
 """The most panels, and the most characters of a panel's and of the program's name, that are taken from an app, which is
@@ -70,11 +70,11 @@ class VisitLimits:
     """How long a visit can last without use or without a browser."""
 
     idle_s: float = float("inf")
-    """The visit ends when the visitor does nothing for this time."""
+    """The visit ends when the visitor does nothing for this time; infinity is no limit."""
     keep_s: float = 3600.0
     """The visit ends when no browser shows the app for this time."""
     keep_unused_s: float = 60.0
-    """The same, if nobody has used the app and it has run no program."""
+    """The limit in place of a longer `keep_s` if nobody has used the app and it has run no program."""
 
 
 class Visit:
@@ -101,7 +101,7 @@ class Visit:
         self._session.told = self._handle_news
         self._program = ""
         self._runs = False
-        """The name of the program in the app, and whether the program runs, from the app's last message."""
+        """`_program` is the name of the program in the app, `_runs` whether it runs, as the app last told."""
         self._is_used = False
         """Whether somebody has used the app, or it has run a program."""
         self._panels: list[str] = []
@@ -111,7 +111,7 @@ class Visit:
         self._begun_s = time.monotonic()
         self._left: asyncio.TimerHandle | None = None
         self._end: asyncio.Future[str] = asyncio.get_running_loop().create_future()
-        """Gets the reason to end the visit."""
+        """Gets the reason for which the visit ends, as text for the visitor."""
 
     @property
     def id(self) -> str:
