@@ -21,7 +21,6 @@ from tuisim.engine.core.spec import (
     UltrasonicSpec,
 )
 from tuisim.engine.protocol import End
-from tuisim.engine.runs.arrays import compute_world_points_mm
 from tuisim.engine.runs.frames import compute_column_values
 from tuisim.engine.runs.readings import (
     MODES_BY_KIND,
@@ -385,6 +384,8 @@ def describe_place(port: str) -> str:
 
 def is_on_mat(records: Array, sensor: ColorSensorSpec) -> Array:
     """Return for each tick whether the whole spot that a sensor sees is on the mat, shape (n,)."""
+    from tuisim.engine.runs.arrays import compute_world_points_mm
+
     x_mm, y_mm = compute_world_points_mm(records, sensor.x_mm, sensor.y_mm)
     edge_mm = sensor.diameter_mm / 2
     in_width = (x_mm >= edge_mm) & (x_mm <= FIELD_WIDTH_MM - edge_mm)
